@@ -150,7 +150,7 @@ def on_circle(t: Any) -> tuple[Any, Any]:
 
 def product(left: Sequence[Any], right: Sequence[Any]) -> tuple[Any, ...]:
     """The product of two polynomials in t."""
-    total: list[Any] = [0] * (len(left) + len(right) - 1)
+    total = [0] * (len(left) + len(right) - 1)
     for i, a in enumerate(left):
         for j, b in enumerate(right):
             total[i + j] = total[i + j] + a * b

@@ -33,14 +33,8 @@ WIDE = 1e4
 """Factor between abscissae from which on not every decade has marks."""
 
 
-class Mark(NamedTuple):
-    """A place, the spread of its abscissa, and what is written beside it."""
-
-    x: float
-    y: float
-    least: float
-    most: float
-    label: str = ""
+Mark = tuple[float, float, float, float, str]
+"""A place, the spread of its abscissa, and what is written beside it."""
 
 
 class Curve(NamedTuple):
@@ -60,12 +54,12 @@ def draw(
     The figure's label is its description.
     """
     curves = [curve for panel in panels.values() for curve in panel]
-    heights = [mark.y for curve in curves for mark in curve.marks]
+    heights = [y for curve in curves for _, y, *_ in curve.marks]
     columns = min(len(panels), COLUMNS) or 1
     rows = ceil(len(panels) / columns)
     notes = [line for sentence in below for line in textwrap.wrap(sentence, LINE)]
     words = [
-        f"{c.name}: {', '.join(f'{m.x:.3g}: {m.y:.3g}' for m in c.marks)}."
+        f"{c.name}: {', '.join(f'{x:.3g}: {y:.3g}' for x, y, *_ in c.marks)}."
         for c in curves
         if c.marks
     ]
@@ -90,7 +84,7 @@ def draw(
 
 def _scales(axes: Axes, marks: Sequence[Mark], heights: Sequence[float]) -> None:
     least = 10.0 ** floor(log10(min((y for y in heights if y > 0), default=1e-3)))
-    low, high = min(mark.least for mark in marks), max(mark.most for mark in marks)
+    low, high = min(mark[2] for mark in marks), max(mark[3] for mark in marks)
     beside = max(1.6, (high / low) ** 0.1)
     axes.set_xscale("log")
     axes.set_yscale("symlog", linthresh=least, linscale=0.5)
@@ -114,16 +108,16 @@ def _scales(axes: Axes, marks: Sequence[Mark], heights: Sequence[float]) -> None
 
 def _curve(axes: Axes, curve: Curve) -> None:
     color = curve.style["color"]
-    x, y = ([getattr(mark, name) for mark in curve.marks] for name in "xy")
+    x, y, least, most, labels = zip(*curve.marks, strict=True) if curve.marks else ((),) * 5
     axes.plot(x, y, label=curve.name, linewidth=1.3, markersize=6, zorder=4, **curve.style)
-    axes.hlines(
-        y,
-        [m.least for m in curve.marks],
-        [m.most for m in curve.marks],
-        color=color,
-        linewidth=0.8,
-        zorder=2,
-    )
-    for mark in curve.marks:
-        axes.annotate(mark.label, (mark.x, mark.y), xytext=(5, 5), textcoords="offset points", fontsize=7.5,
-                      color=color, zorder=5)  # fmt: skip
+    axes.hlines(y, least, most, color=color, linewidth=0.8, zorder=2)
+    for label, place in zip(labels, zip(x, y, strict=True), strict=True):
+        axes.annotate(
+            label,
+            place,
+            xytext=(5, 5),
+            textcoords="offset points",
+            fontsize=7.5,
+            color=color,
+            zorder=5,
+        )

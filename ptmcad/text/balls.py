@@ -8,14 +8,14 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from fractions import Fraction
-from typing import NamedTuple
+from math import prod
 
 from flint import arb, ctx
 
 from ptmcad.text.enclosure import Enclosure
 from ptmcad.text.flint_numbers import from_fraction, to_fraction
 from ptmcad.text.numerals import magnitude
-from ptmcad.text.tree import OPERATORS, Call, Name, Number, Power, Step, Tree, interpret
+from ptmcad.text.tree import Tree, arithmetic, interpret
 
 _GUARD = 6
 """Digits of the enclosure's middle beyond those asked for, at first."""
@@ -31,16 +31,13 @@ def enclosed(ball: arb, digits: int) -> Enclosure | None:
     >>> enclosed(arb(1) / 4, 10) == Enclosure(Fraction(1, 4), Fraction(1, 4)), enclosed(arb(0, 1), 10) is None
     (True, True)
     """
-    if (
-        ball.is_exact() and ball.is_finite()
-    ):  # no wider enclosure of a short decimal settles its digits
+    if not ball.is_finite():
+        return None
+    if ball.is_exact():  # no wider enclosure of a short decimal settles its digits
         return Enclosure(exact(ball), exact(ball))
-    if (
-        not ball.is_finite()
-        or ball.contains(0)
-        or 10 * ball.rel_accuracy_bits() < 33 * (digits + _GUARD - 2)
-    ):
-        return None  # the test of the radius below would say so too; most balls that are too wide end here
+    # the test of the radius below would say so too; most balls that are too wide end here
+    if ball.contains(0) or 10 * ball.rel_accuracy_bits() < 33 * (digits + _GUARD - 2):
+        return None
     middle, radius = exact(ball.mid()), exact(ball.rad())
     # the place of the first digit, to within one: 0.30103 is the logarithm of 2
     first = (middle.numerator.bit_length() - middle.denominator.bit_length()) * 30103 // 100000
@@ -101,36 +98,17 @@ def exact(ball: arb) -> Fraction:
 def in_balls(tree: Tree, known: Mapping[str, arb]) -> arb:
     """The value of an expression at the values of names; not finite where it has none."""
     with ctx.workprec(_BITS):
-        return interpret(tree, _InBalls(known))
+        found: arb = interpret(tree, arithmetic(ball_of, known, _FUNCTIONS, _power))
+    return found
 
 
-class _InBalls(NamedTuple):
-    known: Mapping[str, arb]
+_FUNCTIONS = {"cos": arb.cos, "sin": arb.sin}
 
-    def number(self, number: Number) -> arb:
-        return ball_of(number.value)
 
-    def name(self, name: Name) -> arb:
-        return self.known[name.name]
-
-    def call(self, call: Call) -> arb:
-        argument = interpret(call.argument, self)
-        return argument.cos() if call.function == "cos" else argument.sin()
-
-    def negative(self, value: arb) -> arb:
-        return -value
-
-    def joined(self, left: arb, step: Step, right: arb) -> arb:
-        found: arb = OPERATORS[step.operator](left, right)
-        return found
-
-    def power(self, base: arb, power: Power, exponent: arb) -> arb:
-        whole = exponent.unique_fmpz()
-        if whole is None or abs(whole) > _MAX_POWER:
-            return base**exponent
-        found = arb(1)
-        for _ in range(
-            abs(int(whole))
-        ):  # python-flint's ball ** int is not a number when the ball's middle is zero
-            found = found * base
-        return found if whole >= 0 else 1 / found
+def _power(base: arb, exponent: arb) -> arb:
+    whole = exponent.unique_fmpz()
+    if whole is None or abs(whole) > _MAX_POWER:
+        return base**exponent
+    # python-flint's ball ** int is not a number when the ball's middle is zero
+    found = prod([base] * abs(int(whole)), start=arb(1))
+    return found if whole >= 0 else 1 / found

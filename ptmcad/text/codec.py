@@ -8,7 +8,7 @@ its place. Records are read by codecs too (`part`, `reading`).
 
 from __future__ import annotations
 
-from collections.abc import Callable, Hashable, Mapping, Sequence
+from collections.abc import Callable, Hashable, Mapping
 from dataclasses import MISSING, fields
 from enum import Enum
 from fractions import Fraction
@@ -244,7 +244,8 @@ def record(make: Callable[..., T], like: str = "", /, **keys: Codec[Any] | Key) 
     known = [name for key, entry in entries.items() for name in entry.beside or (key,)]
     needed = [name for name, key in entries.items() if key.default is ... and not key.beside]
     parts = [
-        (n, key, _codec(key), key.get or _getter(n, key), key.default) for n, key in entries.items()
+        (n, key, cast(Codec[Any], key.codec), key.get or _getter(n, key), key.default)
+        for n, key in entries.items()
     ]
     within = {name: key.entry_of for name, key in entries.items() if key.entry_of}
     checked = {name: (get, codec) for name, key, codec, get, _ in parts if key.checked}
@@ -282,7 +283,14 @@ def record(make: Callable[..., T], like: str = "", /, **keys: Codec[Any] | Key) 
                     raise given[name].fault(f"is not {str(other)[:60]!r}, as the rest says")
         return found
 
-    return Codec(write, read, _schema_of(entries, needed))
+    properties, alternatives = dict[str, Any](), dict[str, Any]()
+    for name, key, codec, _, default in parts:
+        schema: Schema = {"const": True} if default is False and not key.always else codec.schema
+        properties |= schema["properties"] if key.beside else {name: schema}
+        alternatives |= {"oneOf": schema["oneOf"]} if key.beside else {}
+    return Codec(write, read, {
+        "type": "object", "properties": properties, "required": needed, "additionalProperties": False, **alternatives,
+    })  # fmt: skip
 
 
 def _getter(name: str, key: Key) -> Callable[[Any], Any]:
@@ -290,24 +298,6 @@ def _getter(name: str, key: Key) -> Callable[[Any], Any]:
     if key.entry_of:
         return lambda value: getattr(value, key.entry_of).get(name)
     return attrgetter(key.field or name)
-
-
-def _codec(key: Key) -> Codec[Any]:
-    assert key.codec is not None
-    return key.codec
-
-
-def _schema_of(entries: Mapping[str, Key], needed: Sequence[str]) -> Schema:
-    properties: dict[str, Any] = {}
-    alternatives: dict[str, Any] = {}
-    for name, key in entries.items():
-        flag = key.default is False and not key.always
-        schema: Schema = {"const": True} if flag else _codec(key).schema
-        properties |= schema["properties"] if key.beside else {name: schema}
-        alternatives |= {"oneOf": schema["oneOf"]} if key.beside else {}
-    return {
-        "type": "object", "properties": properties, "required": needed, "additionalProperties": False, **alternatives,
-    }  # fmt: skip
 
 
 # ---------------------------------------------------------------------------------------------- read off annotations

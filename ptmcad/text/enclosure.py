@@ -102,10 +102,9 @@ class Enclosure:
         >>> Enclosure(Fraction(-1, 10**30), Fraction(1, 10**30)).text(), Enclosure(Fraction(1), Fraction(2)).text()
         ('0 ± 1e-30', '1.5 ± 0.5')
         """
-        told = self.told_digits(digits)
-        if told is None:
+        if (settled := self.told_digits(digits)) is None:
             return self._with_error()
-        digits = told
+        digits = settled
         if self.low == self.high == 0:
             return "0"
         value = self.center
@@ -179,11 +178,9 @@ class AlgebraicNumber:
     @classmethod
     def of(cls, value: Fraction | AlgebraicNumber) -> AlgebraicNumber:
         """A rational number as a root of its polynomial; another number as it is."""
-        return (
-            cls((-value.numerator, value.denominator), value, value)
-            if isinstance(value, Fraction)
-            else value
-        )
+        if not isinstance(value, Fraction):
+            return value
+        return cls((-value.numerator, value.denominator), value, value)
 
     def __repr__(self) -> str:
         # by so many bisections and no more: of a number that is read from a damaged file nothing

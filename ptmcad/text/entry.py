@@ -150,10 +150,6 @@ def as_written(value: object) -> str:
         return f"the yes-or-no value '{str(value).lower()}'"
     if isinstance(value, list | tuple):
         return "a list"
-    return (
-        "a mapping"
-        if isinstance(value, Mapping)
-        else quoted(value)
-        if isinstance(value, str)
-        else f"{value!r:.60}"
-    )
+    if isinstance(value, Mapping):
+        return "a mapping"
+    return quoted(value) if isinstance(value, str) else f"{value!r:.60}"

@@ -5,7 +5,7 @@ checks.
 from __future__ import annotations
 
 from fractions import Fraction
-from typing import Protocol
+from typing import Any
 
 from flint import fmpq
 
@@ -20,18 +20,8 @@ def from_fraction(value: Fraction | int) -> fmpq:
     return fmpq(value.numerator, value.denominator)
 
 
-class Ends(Protocol):
-    """What reaches from one number to another: an axis, an enclosure."""
-
-    @property
-    def low(self) -> Fraction: ...
-
-    @property
-    def high(self) -> Fraction: ...
-
-
-def interval_of(ends: Ends) -> tuple[fmpq, fmpq]:
-    """The two numbers as FLINT's."""
+def interval_of(ends: Any) -> tuple[fmpq, fmpq]:
+    """The ends ``low`` and ``high`` of an axis or an enclosure as FLINT's numbers."""
     return from_fraction(ends.low), from_fraction(ends.high)
 
 

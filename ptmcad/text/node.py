@@ -78,14 +78,10 @@ class Node(NamedTuple):
     @property
     def _inside(self) -> Any:
         """The entries of a list or mapping."""
-        value = self.value
-        return (
-            value.entries
-            if isinstance(value, Tree)
-            else value.items
-            if isinstance(value, Sequence)
-            else value
-        )
+        match self.value:
+            case Tree(inside, _) | Sequence(inside, _):
+                return inside
+        return self.value
 
     def fault(self, problem: str) -> Exception:
         """What is raised of a problem: after a document's place, or as the message of a record's."""
@@ -109,11 +105,11 @@ class Node(NamedTuple):
         """What a function makes of values that were read here; what it refuses is wrong with this
         part.
         """
-        if self.faults is not None:
-            return make(*values, **entries)
         try:
             return make(*values, **entries)
         except (ValueError, ConfigError, ExpressionError) as error:
+            if self.faults is not None:
+                raise
             raise self.fault(f"is wrong: {error}") from error
 
     # ------------------------------------------------------------------------------------------------------- shapes
@@ -193,16 +189,18 @@ class Node(NamedTuple):
         found = self.mapping(like=like, expected=expected)
         if found.keys() >= {*needed} and found.keys() <= {*known}:
             return found
-        for name in (name for name in found if name not in known):
-            hint = did_you_mean(name, known, "; the keys are ")
-            self.note(self._about(name, f"unknown key{hint}", f"has the unknown key {name[:40]!r}"))
-        for name in (name for name in needed if name not in found):
-            self.note(self._about(name, "is missing", f"lacks the key {name!r}"))
+        for name in found:
+            if name not in known:
+                hint = did_you_mean(name, known, "; the keys are ")
+                self._note(name, f"unknown key{hint}", f"has the unknown key {name[:40]!r}")
+        for name in needed:
+            if name not in found:
+                self._note(name, "is missing", f"lacks the key {name!r}")
         return found
 
-    def _about(self, key: str, problem: str, of_document: str) -> Exception:
-        """A fault of a key, which a document has as a whole."""
-        return self.fault(of_document) if self.faults is None else self.at(key).fault(problem)
+    def _note(self, key: str, problem: str, of_document: str) -> None:
+        """Note a fault of a key, which a document has as a whole."""
+        self.note(self.fault(of_document) if self.faults is None else self.at(key).fault(problem))
 
     def has(self, name: str) -> bool:
         """Whether a mapping has a key."""
@@ -214,10 +212,9 @@ class Node(NamedTuple):
 
     def entry(self, key: str) -> Node:
         """What a document's object has under a key."""
-        values = self.mapping()
-        if key not in values:
+        if (found := self.mapping().get(key)) is None:
             raise self.fault(f"lacks the key {key!r}")
-        return values[key]
+        return found
 
     def each(
         self,
@@ -362,8 +359,9 @@ def is_newer(found: Any, expected: str) -> bool:
 def _distinct(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
     found = dict(pairs)
     if len(found) != len(pairs):
-        key = next(k for n, (k, _) in enumerate(pairs) if k in (other for other, _ in pairs[:n]))
-        raise ValueError(f"the key {key[:40]!r} occurs twice")
+        keys = [key for key, _ in pairs]
+        twice = next(key for n, key in enumerate(keys) if key in keys[:n])
+        raise ValueError(f"the key {twice[:40]!r} occurs twice")
     return found
 
 
@@ -385,8 +383,7 @@ def unstorable(data: Any) -> str | None:
     """
     if isinstance(data, str):
         return next(filter(_is_control, data), None)
-    if isinstance(data, Mapping):
-        parts: Iterable[Any] = (part for entry in data.items() for part in entry)
-    else:
-        parts = data if isinstance(data, list | tuple) else ()
+    parts = data.items() if isinstance(data, Mapping) else data
+    if not isinstance(data, Mapping | list | tuple):
+        return None
     return next((found for part in parts if (found := unstorable(part)) is not None), None)

@@ -56,7 +56,7 @@ def parse(text: object, names: Expressions | None = None) -> Expression:
         of numbers).
     """
     if isinstance(text, str | Decimal):  # a Decimal's exponent may be huge: a text has limits
-        return interpret(tree_of(str(text)), _InTheAxes(names or {}))
+        return value_in_axes(tree_of(str(text)), names or {})
     try:
         return constant(exactly(text))
     except (TypeError, ValueError) as error:
@@ -168,22 +168,23 @@ class _InTheAxes:
         if n < 0 and not base.numerator:
             raise ExpressionError("division by zero", power.position)
         if base.is_constant:
-            if abs(base.constant()) not in (0, 1) and abs(n) * _bits(base) > MAX_BITS:
-                raise ExpressionError(f"the power has more than {MAX_BITS} bits", power.position)
             if abs(base.constant()) in (0, 1):
                 n = n % 2 if n <= 0 else 2 - n % 2
+            elif abs(n) * _bits(base) > MAX_BITS:
+                raise ExpressionError(f"the power has more than {MAX_BITS} bits", power.position)
         else:
-            if abs(n) > MAX_EXPONENT:
+            size = abs(n)
+            if size > MAX_EXPONENT:
                 raise ExpressionError(
                     f"an exponent of a name is at most {MAX_EXPONENT}", power.position
                 )
             terms = max(len(base.numerator), len(base.denominator))
-            if abs(n) * base.degree > MAX_DEGREE or abs(n) * _bits(base) > MAX_BITS:
+            if size * base.degree > MAX_DEGREE or size * _bits(base) > MAX_BITS:
                 raise ExpressionError(
                     f"the power is too large (degree over {MAX_DEGREE} or numbers over {MAX_BITS} bits)",
                     power.position,
                 )
-            if min(comb(terms + abs(n) - 1, abs(n)), comb(abs(n) * base.degree + 2, 2)) > MAX_TERMS:
+            if min(comb(terms + size - 1, size), comb(size * base.degree + 2, 2)) > MAX_TERMS:
                 raise ExpressionError(f"the power has more than {MAX_TERMS} terms", power.position)
             self.spend(MAX_TERMS * terms, power.position)
         return self.limited(partial(base.__pow__, n), power.position)

@@ -13,7 +13,7 @@ from fractions import Fraction
 from math import gcd
 from typing import Any
 
-from ptmcad.text.numerals import MAX_DIGITS, integer_of, integer_text
+from ptmcad.text.numerals import MAX_DIGITS, integer_of, integer_text, text_of
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,10 +40,8 @@ class PlanePolynomial:
     @property
     def degrees(self) -> tuple[int, int]:
         """The degree in each axis."""
-        return (
-            max((i for i, _, _ in self.terms), default=0),
-            max((j for _, j, _ in self.terms), default=0),
-        )
+        first, second, _ = map(max, zip(*self.terms, strict=True)) if self.terms else (0, 0, 0)
+        return first, second
 
     @property
     def total_degree(self) -> int:
@@ -52,10 +50,9 @@ class PlanePolynomial:
     def __call__(self, x: Fraction, y: Fraction) -> Fraction:
         """The exact value at a rational point."""
         # integers over one denominator: a fraction for each term would be reduced each time
-        degrees = self.degrees
-        across, along = _homogeneous_powers(x, degrees[0]), _homogeneous_powers(y, degrees[1])
+        across, along = map(_homogeneous_powers, (x, y), self.degrees)
         total = sum(c * across[i] * along[j] for i, j, c in self.terms)
-        return Fraction(total, x.denominator ** degrees[0] * y.denominator ** degrees[1])
+        return Fraction(total, across[0] * along[0])
 
     def text(self, names: tuple[str, str] = ("x", "y")) -> str:
         """The polynomial as text, such as ``2*x^2*y - 1``."""
@@ -143,13 +140,9 @@ def terms_text(terms: Iterable[tuple[Sequence[int], Any]], names: Sequence[str])
     >>> terms_text((((2, 1), 2), ((0, 0), Fraction(-1, 3))), ("x", "y"))
     '2*x^2*y - 1/3'
     """
-    return " ".join(signed_terms(terms, names, number=_rational_text)) or "0"
+    return " ".join(signed_terms(terms, names, number=text_of)) or "0"
 
 
 def plane_text(terms: Iterable[tuple[int, int, Any]], names: Sequence[str]) -> str:
     """The same of terms ``(i, j, c)`` in two names."""
-    return terms_text((((i, j), c) for i, j, c in terms), names)
-
-
-def _rational_text(value: int | Fraction) -> str:
-    return integer_text(value) if isinstance(value, int) else str(value)
+    return terms_text(((powers, c) for *powers, c in terms), names)

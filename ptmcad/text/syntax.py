@@ -72,6 +72,8 @@ _WRITE_INSTEAD = {
     "°": "the angle by its cosine and sine, as two parameters", "∞": "a large number, since all values are finite",
     "√": "a rational number near the root, or make it an unknown", "%": "a share as a fraction, such as 1/2",
     "π": "a rational number near it, such as 355/113", "|": "the square, or a record for each case",
+    "=": "the left side less the right side, which is zero then",
+    **dict.fromkeys("<>", "what has to be positive alone"),
 }  # fmt: skip
 
 
@@ -177,18 +179,13 @@ def _bad_character(text: str, position: int) -> ExpressionError:
     character, after = text[position], NAME.match(text, position + 1)
     if character == "." and after and after.group().lower() in NOT_NUMBERS:  # as YAML spells them
         return unknown_name(after.group(), position, ())
+    remedy = "an expression has numbers, names, + - * / ^ and parentheses"
     if character in _WRITE_INSTEAD:
-        remedy = f": write {_WRITE_INSTEAD[character]}"
+        remedy = f"write {_WRITE_INSTEAD[character]}"
     elif character == "_":
-        remedy = ": a name starts with a letter, and digits are not grouped"
-    elif character == "=":
-        remedy = ": write the left side less the right side, which is zero then"
-    elif character in "<>":
-        remedy = ": write what has to be positive alone"
-    else:
-        remedy = ": an expression has numbers, names, + - * / ^ and parentheses"
+        remedy = "a name starts with a letter, and digits are not grouped"
     shown = repr(character) if character.isascii() else f"'{character}' (U+{ord(character):04X})"
-    return ExpressionError(f"the character {shown} cannot be used{remedy}", position)
+    return ExpressionError(f"the character {shown} cannot be used: {remedy}", position)
 
 
 def _with_unit(unit: str, position: int) -> ExpressionError:

@@ -45,7 +45,7 @@ def read_bytes(path: str | Path, most: int, what: str) -> bytes:
     descriptor = _open(path, what)
     try:
         with open(descriptor, "rb") as stream:
-            data: bytes | None = stream.read(most + 1)
+            data = stream.read(most + 1)
             if (
                 data is None
             ):  # a file that would keep its reader waiting, such as a log of the kernel

@@ -3,7 +3,7 @@ position in a text.
 
 Guarantee: `to_text` writes a tree that was read in a form that is read as the same tree.
 
-What a tree means is said by an `Interpretation`: rational functions of two axes in
+What a tree means is said by an interpretation: rational functions of two axes in
 `ptmcad.text.parsing`, the elements of any ring in `ptmcad.model.evaluate`.
 """
 
@@ -11,10 +11,11 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from fractions import Fraction
-from operator import add, mul, sub, truediv
-from typing import Any, NamedTuple, Protocol, TypeVar
+from operator import add, mul, neg, sub, truediv
+from types import SimpleNamespace
+from typing import Any, NamedTuple, Protocol, TypeVar, cast
 
-from ptmcad.text.numerals import decimal_places, pointed
+from ptmcad.text.numerals import decimal_places, pointed, text_of
 
 MAX_DIGITS = 2_000
 MAX_DECIMAL_EXPONENT = 1_000
@@ -94,7 +95,7 @@ Tree = Number | Name | Negative | Chain | Power | Call
 Value = TypeVar("Value")
 
 
-class Interpretation(Protocol[Value]):
+class _Interpretation(Protocol[Value]):
     """What the parts of a tree mean, in values of one type.
 
     `interpret` asks from left to right: operands before what joins them. A method may raise
@@ -120,7 +121,7 @@ class Interpretation(Protocol[Value]):
 
 def interpret(
     tree: Tree,
-    interpretation: Interpretation[Value],
+    interpretation: _Interpretation[Value],
     known: dict[int, tuple[Tree, Value]] | None = None,
 ) -> Value:
     """The value of a tree.
@@ -132,39 +133,51 @@ def interpret(
     """
     if known is not None and id(tree) in known:
         return known[id(tree)][1]
-    value = _interpreted(tree, interpretation, known)
-    if known is not None:
-        known[id(tree)] = (
-            tree,
-            value,
-        )  # with the tree, whose identity nothing else has while it is kept
-    return value
-
-
-def _interpreted(
-    tree: Tree, interpretation: Interpretation[Value], known: dict[int, tuple[Tree, Value]] | None
-) -> Value:
     match tree:
         case Name():
-            return interpretation.name(tree)
+            value = interpretation.name(tree)
         case Number():
-            return interpretation.number(tree)
+            value = interpretation.number(tree)
         case Chain(first, steps):
             value = interpret(first, interpretation, known)
             for step in steps:
-                value = interpretation.joined(
-                    value, step, interpret(step.operand, interpretation, known)
-                )
-            return value
+                operand = interpret(step.operand, interpretation, known)
+                value = interpretation.joined(value, step, operand)
         case Power(base, exponent):
-            of_base, of_exponent = (
-                interpret(part, interpretation, known) for part in (base, exponent)
-            )
-            return interpretation.power(of_base, tree, of_exponent)
+            below = interpret(base, interpretation, known)
+            value = interpretation.power(below, tree, interpret(exponent, interpretation, known))
         case Call():
-            return interpretation.call(tree)
+            value = interpretation.call(tree)
         case Negative(operand):
-            return interpretation.negative(interpret(operand, interpretation, known))
+            value = interpretation.negative(interpret(operand, interpretation, known))
+    if known is not None:  # with the tree, whose identity nothing else has while it is kept
+        known[id(tree)] = tree, value
+    return value
+
+
+def arithmetic(
+    constant: Callable[[Fraction], Any],
+    names: Mapping[str, Any],
+    functions: Mapping[str, Callable[[Any], Any]],
+    power: Callable[[Any, Any], Any],
+) -> _Interpretation[Any]:
+    """The interpretation in values that have operators of their own.
+
+    Parameters
+    ----------
+    constant : makes a value of a number.
+    names, functions : what each name stands for.
+    power : of a base and an exponent.
+    """
+    found: Any = SimpleNamespace(
+        number=lambda number: constant(number.value),
+        name=lambda name: names[name.name],
+        call=lambda call: functions[call.function](interpret(call.argument, found)),
+        negative=neg,
+        joined=lambda left, step, right: OPERATORS[step.operator](left, right),
+        power=lambda base, _, exponent: power(base, exponent),
+    )
+    return cast(_Interpretation[Any], found)
 
 
 def names_of(tree: Tree) -> tuple[str, ...]:
@@ -235,19 +248,15 @@ def to_text(tree: Tree) -> str:
                 text += operator + _within(step.operand, lowest)
             return text
         case Power(base, exponent):
-            inner = (
-                f"({to_text(base)})"
-                if isinstance(base, Power | Negative)
-                else _within(base, TIGHTER)
-            )
-            return f"{inner}^{_within(exponent, TIGHTER)}"
+            inner = f"({to_text(base)})" if isinstance(base, Power | Negative) else _within(base)
+            return f"{inner}^{_within(exponent)}"
         case Negative(operand):
-            return f"-{_within(operand, TIGHTER)}"
+            return f"-{_within(operand)}"
         case Call(function, argument):
             return f"{function}({to_text(argument)})"
 
 
-def _within(tree: Tree, lowest: int) -> str:
+def _within(tree: Tree, lowest: int = TIGHTER) -> str:
     """A tree as a part of another: in parentheses when it is a chain that binds less tightly than
     `lowest`.
     """
@@ -261,7 +270,7 @@ def _number_text(value: Fraction) -> str:
     """A number as it is read, or a quotient."""
     places = decimal_places(value)
     if places is None:
-        return f"{value.numerator}/{value.denominator}"
+        return text_of(value)
     sign = "-" if value < 0 else ""
     digits = str(abs(value.numerator) * 10**places // value.denominator)
     if places == 0 and len(digits) <= MAX_DIGITS:

@@ -116,16 +116,16 @@ def surface_of(
     members = tuple(sorted({value for run in runs for value, _ in run}))
     return BoundarySurface(
         (axes[0].name, axes[1].name, free.name),
-        mesh.vertices,
-        mesh.faces,
-        mesh.sheet,
-        mesh.member,
-        mesh.sheets,
+        *mesh,
         members,
         search.deviation,
         search.unresolved,
         changes.complete,
     )
+
+
+Slab = tuple[Fraction, Fraction]
+"""From one value to another."""
 
 
 class _Gap(NamedTuple):
@@ -141,7 +141,7 @@ class _Gap(NamedTuple):
         none.
     """
 
-    slab: tuple[Fraction, Fraction]
+    slab: Slab
     places: tuple[float, float, float]
     low: Fraction
     middle: Fraction
@@ -153,6 +153,9 @@ class _Gap(NamedTuple):
         """Both, each by its ends' places and values."""
         a, b, c = self.places
         return ((a, self.low, b, self.middle), (b, self.middle, c, self.high))
+
+
+_Entry = tuple[float, Fraction, _Gap]
 
 
 class _SurfaceSearch:
@@ -182,19 +185,19 @@ class _SurfaceSearch:
         self.width = changes.free.width
         self.stated = common.family.values
         self.sizes = tuple(a.width for a in common.family.axes)
-        self.joined: set[tuple[Fraction, Fraction]] = set()
+        self.joined: set[Slab] = set()
         self.deviation, self.unresolved = 0.0, 0
         self._known: dict[Fraction, BoundaryStrips | None] = {}
 
     def run(self) -> None:
         """Look at gaps until sheets join all members that they can, near enough."""
-        heap: list[tuple[float, Fraction, _Gap]] = []
+        heap: list[_Entry] = []
         for slab in self.slabs:
             stated = [(_place(slab, v), v) for v in self.stated if slab[0] < v < slab[1]] or [
                 (0.5, _value(slab, 0.5, slab))
             ]
             for start, end in pairwise([(0.0, slab[0]), *stated, (1.0, slab[1])]):
-                self._push(heap, self._gap(slab, *start, *end))
+                self._push(heap, slab, *start, *end)
         while heap:
             gap = heappop(heap)[2]
             self.members.report("members of the surface", len(self._known), self.max_members)
@@ -203,8 +206,8 @@ class _SurfaceSearch:
             elif self._is_last(gap):
                 self._close(gap)
             else:
-                for a, low, b, high in gap.halves:
-                    self._push(heap, self._gap(gap.slab, a, low, b, high))
+                for half in gap.halves:
+                    self._push(heap, gap.slab, *half)
 
     def runs(self) -> list[Joined]:
         """Members in increasing order that sheets join each to the next."""
@@ -240,21 +243,22 @@ class _SurfaceSearch:
             elif high - low > NARROWEST * self.width:
                 self.unresolved += 1
 
-    def _push(self, heap: list[tuple[float, Fraction, _Gap]], gap: _Gap) -> None:
-        share = float((gap.high - gap.low) / self.width)
-        heappush(heap, (-min(gap.deviation, share), gap.low, gap))
-
-    def _gap(
+    def _push(
         self,
-        slab: tuple[Fraction, Fraction],
+        heap: list[_Entry],
+        slab: Slab,
         start: float,
         low: Fraction,
         end: float,
         high: Fraction,
-    ) -> _Gap:
+    ) -> None:
+        """Enter the gap between two members."""
         middle = (start + end) / 2
         value = _value(slab, middle, (low, high))
-        return _Gap(slab, (start, middle, end), low, value, high, self._deviation(low, value, high))
+        deviation = self._deviation(low, value, high)
+        share = float((high - low) / self.width)
+        gap = _Gap(slab, (start, middle, end), low, value, high, deviation)
+        heappush(heap, (-min(deviation, share), low, gap))
 
     def _boundary(self, value: Fraction) -> BoundaryStrips | None:
         """None where a member has no arrangement."""
@@ -287,9 +291,7 @@ class _SurfaceSearch:
         return float(most)
 
 
-def _value(
-    slab: tuple[Fraction, Fraction], place: float, around: tuple[Fraction, Fraction]
-) -> Fraction:
+def _value(slab: Slab, place: float, around: Slab) -> Fraction:
     """One with few digits near a place, between two others; denser at the slab's ends, where
     boundaries move fast.
     """
@@ -303,12 +305,12 @@ def _value(
     return simplest_fraction(least, most)
 
 
-def _place(slab: tuple[Fraction, Fraction], value: Fraction) -> float:
+def _place(slab: Slab, value: Fraction) -> float:
     """That of a value, about: `_value` has others with fewer digits."""
     return acos(1 - 2 * float((value - slab[0]) / (slab[1] - slab[0]))) / pi
 
 
-def _slabs(changes: Changes, members: Members) -> list[tuple[Fraction, Fraction]]:
+def _slabs(changes: Changes, members: Members) -> list[Slab]:
     """The intervals between changes, from member to member, without the nearest surroundings of
     changes.
     """
@@ -321,16 +323,8 @@ def _slabs(changes: Changes, members: Members) -> list[tuple[Fraction, Fraction]
     lows, highs = [end(free.low, changes.at_ends[0], free.low + near)], []
     for change in changes:
         # of an enclosure the ends are members themselves
-        exact = change.is_exact
-        highs.append(
-            simplest_fraction(change.value.low - near, change.value.low)
-            if exact
-            else change.value.low
-        )
-        lows.append(
-            simplest_fraction(change.value.high, change.value.high + near)
-            if exact
-            else change.value.high
-        )
+        low, high = change.value.low, change.value.high
+        highs.append(simplest_fraction(low - near, low) if change.is_exact else low)
+        lows.append(simplest_fraction(high, high + near) if change.is_exact else high)
     highs.append(end(free.high, changes.at_ends[1], free.high - near))
     return [slab for slab in zip(lows, highs, strict=True) if slab[0] < slab[1]]

@@ -12,13 +12,12 @@ from collections.abc import Sequence
 from fractions import Fraction
 from itertools import pairwise
 from math import cos, hypot, pi
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ptmcad.answer.boundarysurface import Sheet
-from ptmcad.exact.slicearrangement import JUMP, BoundaryOpening, BoundaryStrips, Key
+from ptmcad.exact.slicearrangement import JUMP, BoundaryStrips, Key
 from ptmcad.question.slice import Axes
 
 Joined = list[tuple[Fraction, BoundaryStrips]]
@@ -28,16 +27,12 @@ _WELD = float(JUMP)
 """Of the window: ends of walls that are no further apart are one vertex."""
 
 
-class Mesh(NamedTuple):
-    """Vertices and triangles; each triangle's sheet, and each vertex's member by its number among
-    all values.
-    """
-
-    vertices: NDArray[np.float64]
-    faces: NDArray[np.int64]
-    sheet: NDArray[np.int64]
-    member: NDArray[np.int64]
-    sheets: tuple[Sheet, ...]
+Floats = NDArray[np.float64]
+Integers = NDArray[np.int64]
+Mesh = tuple[Floats, Integers, Integers, Integers, tuple[Sheet, ...]]
+"""Vertices, triangles, each triangle's sheet, each vertex's member by its number among all values,
+and the sheets: as of `BoundarySurface`.
+"""
 
 
 def mesh_of(runs: Sequence[Joined], axes: Axes, tolerance: Fraction) -> Mesh:
@@ -76,9 +71,7 @@ def _add_walls(builder: _Builder, run: Joined, number: int, tolerance: float) ->
 
 def _add_openings(builder: _Builder, run: Joined) -> None:
     """Pieces of lines across the base that neighbouring members have alike."""
-    openings: list[dict[tuple[tuple[int, int, int], tuple[Key, Key]], BoundaryOpening]] = [
-        {(o.place, o.keys): o for o in strips.openings} for _, strips in run
-    ]
+    openings = [{(o.place, o.keys): o for o in strips.openings} for _, strips in run]
     for k, (before, after) in enumerate(pairwise(openings)):
         for place in sorted(before.keys() & after.keys()):
             sheet = builder.sheet(place[1], run[k : k + 2])
@@ -100,7 +93,7 @@ def _shares(builder: _Builder, run: Joined, number: int, tolerance: float) -> li
     """
     some = [strips for _, strips in (run[0], run[len(run) // 3], run[2 * len(run) // 3], run[-1])]
 
-    def columns(place: float) -> NDArray[np.float64]:
+    def columns(place: float) -> Floats:
         found = [(s.base, s.at(number, _share(place))) for s in some]
         return np.array(
             [[builder.point(base, at, h) for h in heights] for base, (at, *heights) in found]
@@ -123,9 +116,7 @@ def _share(place: float) -> float:
     return (1 - cos(pi * place)) / 2 if 0 < place < 1 else place
 
 
-def _deviation(
-    first: NDArray[np.float64], middle: NDArray[np.float64], last: NDArray[np.float64]
-) -> float:
+def _deviation(first: Floats, middle: Floats, last: Floats) -> float:
     """The largest distance of a middle point from its chord; arrays of points of the window's unit
     square.
     """
@@ -202,6 +193,4 @@ class _Builder:
         heights = values[member] if len(member) else np.zeros(0)
         vertices = np.column_stack([*scaled, heights])
         faces = np.array(self.faces, dtype=np.int64).reshape(-1, 3)
-        return Mesh(
-            vertices, faces, np.array(self.of_sheet, dtype=np.int64), member, tuple(self.sheets)
-        )
+        return vertices, faces, np.array(self.of_sheet, dtype=np.int64), member, tuple(self.sheets)

@@ -23,7 +23,6 @@ from ptmcad.studies import byhand
 from ptmcad.studies.bench.error import (
     COUNTS,
     Truth,
-    Wall,
     cover_error,
     distance,
     grid_error,
@@ -59,9 +58,7 @@ def polyline(heights: list[Fraction]) -> Truth:
     parts = len(heights) - 1
     points = np.array([[k / parts, float(a)] for k, a in enumerate(heights)])
     edge = np.array([[0.0, 1.0], [1.0, 1.0]])
-    return Truth(
-        0, (0, 1), (1, 2), (Wall(points, 0.0, 0, 1), Wall(edge, 0.0, 1, -1)), np.zeros((0, 3))
-    )
+    return Truth(0, (0, 1), (1, 2), ((points, 0.0, 0, 1), (edge, 0.0, 1, -1)), np.zeros((0, 3)))
 
 
 def wrong_area(truth: Truth, picture: np.ndarray) -> float:

@@ -108,13 +108,13 @@ def test_summary_counts_and_shows_what_is_not_confirmed() -> None:
 
 def test_equations_are_the_right_ones() -> None:
     """The page's (5), (6), (12), (13) read back as SymPy, against the corrected text."""
-    by_number = {e.number: e for e in equations.equations()}
+    by_number = {e["number"]: e for e in equations.equations()}
     names = {n: sp.Symbol(n, positive=True) for n in ("L1", "L2", "rho", "k")}
     names |= {n: sp.Symbol(n, real=True) for n in ("F3", "F4", "t1", "t2")}
     names |= {"f3": names["F3"] / names["k"], "f4": names["F4"] / names["k"]}
 
     def read(number: str) -> sp.Expr:
-        left, _, right = by_number[number].text.partition(" = ")
+        left, _, right = by_number[number]["text"].partition(" = ")
         assert left in ("0", "det(H)")
         return sp.sympify(right.replace("^", "**"), locals=names)
 

@@ -39,7 +39,7 @@ _maps: dict[tuple[str, int], RegionMap] = {}
 
 def folded(name: str, n: int) -> RegionMap:
     if (name, n) not in _maps:
-        _maps[name, n] = ptmcad.classify(slice_from_mapping(FAMILIES[name].record(n, 1)))
+        _maps[name, n] = ptmcad.classify(slice_from_mapping(FAMILIES[name][2](n, 1)))
     return _maps[name, n]
 
 
@@ -48,7 +48,7 @@ def folded(name: str, n: int) -> RegionMap:
 def test_the_engine_finds_the_regions_of_folds(name: str, n: int) -> None:
     result = folded(name, n)
     check_structure(result)
-    assert len(result.regions) == FAMILIES[name].regions(n)
+    assert len(result.regions) == FAMILIES[name][3](n)
     assert sorted({region.stable for region in result.regions}) == [1, 2]
     assert sum(region.stable == 2 for region in result.regions) == 1
 
@@ -90,10 +90,10 @@ def test_the_curves_of_bent_slices_have_the_degree_asked_for(n: int, seed: int) 
 
 @pytest.mark.parametrize("name", FAMILIES)
 def test_every_size_is_a_record_and_another_seed_draws_another(name: str) -> None:
-    family = FAMILIES[name]
-    for n in family.sizes:
-        slice_from_mapping(family.record(n, 1))
-    drawn = [family.record(family.sizes[0], seed) for seed in (1, 1, 2)]
+    _, sizes, record, _ = FAMILIES[name]
+    for n in sizes:
+        slice_from_mapping(record(n, 1))
+    drawn = [record(sizes[0], seed) for seed in (1, 1, 2)]
     assert drawn[0] == drawn[1]
     assert (drawn[0] != drawn[2]) == (name == "degree")
 
@@ -135,7 +135,8 @@ def test_the_study(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Rows for each size and for the fits; another number of regions is a failure; the picture is
     drawn.
     """
-    small = FAMILIES["fold"]._replace(sizes=(1, 2, 3), regions=lambda n: n + 3 if n < 3 else 4)
+    title, _, record, _ = FAMILIES["fold"]
+    small = title, (1, 2, 3), record, lambda n: n + 3 if n < 3 else 4
     monkeypatch.setattr(scaling, "FAMILIES", {"small": small})
     assert command.main(["scaling", "small", "--rounds", "1", "--out", str(tmp_path)]) == 0
     assert {path.name for path in tmp_path.iterdir()} == {"scaling.json", "scaling.svg"}

@@ -13,6 +13,7 @@ from collections import Counter
 from fractions import Fraction
 from math import atan
 from random import Random
+from typing import Any
 
 import pytest
 import sympy
@@ -20,7 +21,7 @@ from support.free_length_equilibria import free_length_equilibria
 from support.programs import needs_msolve, real_solutions
 
 from ptmcad.studies.paper import free
-from ptmcad.studies.paper.squaring import SignedSolutions, signed_solutions
+from ptmcad.studies.paper.squaring import signed_solutions
 
 Numbers = tuple[str, str, str, str, str, str]
 """rho, L1, L2, l0, f3, f4."""
@@ -155,7 +156,7 @@ def test_symmetries() -> None:
     counts = [(len(s.solutions), s.real, s.equilibria) for s in (first, swapped, reversed_, scaled)]
     assert counts == [counts[0]] * 4
 
-    def by_signs(found: SignedSolutions, factor: int) -> Counter[tuple[int, ...]]:
+    def by_signs(found: Any, factor: int) -> Counter[tuple[int, ...]]:
         return Counter(
             tuple(factor * x for x in signs) for _, t2, signs in found.solutions if t2.imag == 0
         )

@@ -246,7 +246,7 @@ def test_sides_differ_by_one_pair(name: str) -> None:
     at = NAMED[name]
     for sign, counts in ((1, at.many), (-1, FEW)):
         poses = sextic_poses(at.beside(sign * Fraction(1, 1000)))
-        assert (len(poses), sum(p.index == 0 for p in poses)) == counts
+        assert (len(poses), sum(index == 0 for *_, index in poses)) == counts
 
 
 def test_cases_expect_what_the_constructions_say() -> None:
@@ -283,18 +283,18 @@ def test_the_reference_agrees_with_signatures_of_hermite_forms(seed: int) -> Non
 
     p, _ = tame(random.Random(seed))
     counts = count_by_signature(system_of("ptm"), {n: from_fraction(v) for n, v in p.items()})
-    indices = [pose.index for pose in sextic_poses({n: Fraction(v) for n, v in p.items()})]
+    indices = [index for *_, index in sextic_poses({n: Fraction(v) for n, v in p.items()})]
     assert (indices.count(0), indices.count(1), indices.count(2)) == counts.index
 
 
 def test_newton_in_balls_proves_what_the_sextic_finds() -> None:
     parameters = dict(TAME.parameters)
-    for pose in sextic_poses(parameters):
-        proved = newton_pose(parameters, (float(pose.th1.mid()), float(pose.th2.mid())))
+    for *angles, index in sextic_poses(parameters):
+        first, second = (float(angle.mid()) for angle in angles)
+        proved = newton_pose(parameters, (first, second))
         assert proved is not None
-        assert proved.index == pose.index
-        assert proved.th1.overlaps(pose.th1)
-        assert proved.th2.overlaps(pose.th2)
+        assert proved[2] == index
+        assert all(own.overlaps(angle) for own, angle in zip(proved, angles, strict=False))
 
 
 def test_newton_in_balls_proves_nothing_at_a_degenerate_pose() -> None:
@@ -309,9 +309,9 @@ def test_double_precision_agrees_on_a_tame_point() -> None:
     parameters = dict(TAME.parameters)
     found, known = double_poses(parameters), sextic_poses(parameters)
     assert found is not None
-    assert sorted(p.index for p in found) == sorted(p.index for p in known)
-    for pose in found:
-        assert min(angle_error(pose.th1, float(k.th1.mid())) for k in known) < 1e-12
+    assert sorted(index for *_, index in found) == sorted(index for *_, index in known)
+    for th1, *_ in found:
+        assert min(angle_error(th1, float(k[0].mid())) for k in known) < 1e-12
 
 
 def test_a_wrong_answer_is_called_wrong() -> None:

@@ -14,9 +14,9 @@ import ptmcad
 from ptmcad.answer.motion import Motion
 from ptmcad.ask.fields import track
 from ptmcad.ask.fields.course import Course, corners_of
-from ptmcad.errors import ConfigError
+from ptmcad.errors import ConfigError, PtmcadError
 from ptmcad.workbench.fields import posemotion as module
-from ptmcad.workbench.fields.posemotion import LostError, motion_of
+from ptmcad.workbench.fields.posemotion import motion_of
 
 
 @pytest.fixture(scope="module")
@@ -93,7 +93,7 @@ def test_what_was_not_stable_or_has_no_energy_does_not_fall() -> None:
 
 def test_a_pose_that_is_lost_within_a_region_is_an_error(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(track, "ALONG", 1e-12)
-    with pytest.raises(LostError, match="in the middle of a region"):
+    with pytest.raises(PtmcadError, match="in the middle of a region"):
         motion_of(shipped("fig4"), "rho=3/4:4/5,L2=3/2", frames=5)
 
 
@@ -101,7 +101,7 @@ def test_a_pose_that_is_none_of_the_counted_ones_is_an_error(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     monkeypatch.setattr(module, "SAME", 0.0)
-    with pytest.raises(LostError, match="none of those that are counted"):
+    with pytest.raises(PtmcadError, match="none of those that are counted"):
         motion_of(shipped("fig4"), "rho=3/4:4/5,L2=3/2", frames=5)
 
 

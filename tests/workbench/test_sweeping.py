@@ -30,7 +30,7 @@ from ptmcad.errors import ConfigError, LimitReached, OutputError
 from ptmcad.question.config.sweeps import sweep_from
 from ptmcad.workbench.sweeps import index
 from ptmcad.workbench.sweeps import run as engine
-from ptmcad.workbench.sweeps.member import Failed, Found, Refused, Wanted, compute, computing
+from ptmcad.workbench.sweeps.member import Outcome, Wanted, compute, computing
 from ptmcad.workbench.sweeps.pool import Pool
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -141,11 +141,11 @@ def test_a_worker_that_dies_fails_its_member_alone() -> None:
         assert not pool.room
         pool._workers[0].process.kill()
         found = dict(pool.answers(None))
-        assert found == {0: Failed("its process was ended by SIGKILL")}
+        assert found == {0: Outcome(State.FAILED, "its process was ended by SIGKILL")}
         pool.submit(0)
         while pool.busy:
             found |= dict(pool.answers(None))
-        assert isinstance(found[0], Found) and isinstance(found[1], Found)
+        assert found[0].state is found[1].state is State.DONE
     finally:
         pool.close()
 
@@ -161,14 +161,14 @@ def test_an_unexpected_error_is_its_members_failure(monkeypatch: pytest.MonkeyPa
         found: dict[int, Any] = {}
         while pool.busy:
             found |= dict(pool.answers(None))
-        assert isinstance(found[0], Refused) and "none of auto, exact" in found[0].error
+        assert found[0].state is State.REFUSED and "none of auto, exact" in found[0].error
         pool.submit(2)
         pool.submit(99)
         pool.submit(3)
         while pool.busy:
             found |= dict(pool.answers(None))
-        assert found[99] == Failed("IndexError: there is no member 99 of 6")
-        assert isinstance(found[3], Refused)
+        assert found[99] == Outcome(State.FAILED, "IndexError: there is no member 99 of 6")
+        assert found[3].state is State.REFUSED
     finally:
         pool.close()
 
@@ -178,14 +178,16 @@ def test_a_member_that_overruns_its_time_is_a_failure(tmp_path: Path) -> None:
     same.
     """
     question = sweep_from(CUSPS)
-    assert computing(question, Wanted(timeout=1e-6))(0) == Failed(
-        "the member's time limit of 1e-06 s was reached"
+    assert computing(question, Wanted(timeout=1e-6))(0) == Outcome(
+        State.FAILED, "the member's time limit of 1e-06 s was reached"
     )
     pool = Pool(computing(question, Wanted(timeout=1e-3)), 1, 1e-3)
     try:
         pool.submit(0)
         os.kill(pool._workers[0].process.pid, signal.SIGSTOP)
-        assert pool.answers(None) == [(0, Failed("the member's time limit of 0.001 s was reached"))]
+        assert pool.answers(None) == [
+            (0, Outcome(State.FAILED, "the member's time limit of 0.001 s was reached"))
+        ]
     finally:
         pool.close()
 
@@ -201,7 +203,7 @@ def test_failures_are_recorded_tried_again_and_stop_no_other(tmp_path: Path) -> 
 
 def test_other_versions_and_orders_are_told_apart(tmp_path: Path) -> None:
     found = compute(sweep_from(CUSPS), QUICK, "0.0", 0)
-    assert isinstance(found, Failed) and found.error.endswith("the sweep was asked with 0.0")
+    assert found.state is State.FAILED and found.error.endswith("the sweep was asked with 0.0")
     mapped(CUSPS, tmp_path / "u")
     for record, options in (({**CUSPS, "count": "total"}, {}), (CUSPS, {"wanted": Wanted()})):
         with pytest.raises(

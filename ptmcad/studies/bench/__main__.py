@@ -33,7 +33,7 @@ LIMITS = ("--tolerance", "1/20", "--jobs", "1", "--timeout", "30")
 """Of certified runs of an ablation."""
 
 
-def slices_of(given: Sequence[Path]) -> dict[Path, Slice]:
+def slices_of(given: Sequence[str]) -> dict[Path, Slice]:
     """The records that are given, else those in configs/.
 
     Raises
@@ -41,7 +41,7 @@ def slices_of(given: Sequence[Path]) -> dict[Path, Slice]:
     PtmcadError
         When there are none, or one cannot be read.
     """
-    found = given or sorted(Path("configs").glob("*.yaml"))
+    found = [*map(Path, given)] or sorted(Path("configs").glob("*.yaml"))
     if not found:
         raise PtmcadError(
             "no configs/*.yaml here: name the problem records, or change to the project's folder"
@@ -57,8 +57,8 @@ def timed(options: argparse.Namespace) -> pd.DataFrame:
     """
     jobs, foretold = [Job("floor", "", "", FLOOR)], {}
     with tempfile.TemporaryDirectory() as folder:
-        for path, slice in slices_of(options.records).items():
-            if slice.has_free_lengths and not options.records:
+        for path, slice in slices_of(options.names).items():
+            if slice.has_free_lengths and not options.names:
                 continue  # such a map takes as long as it is given
             foretold[len(jobs)] = check(slice).forecast
             for formats in ("json", "json,png,svg"):
@@ -81,17 +81,15 @@ def ablation(options: argparse.Namespace) -> pd.DataFrame:
     "imports".
     """
     tables = []
-    for path, slice in slices_of(options.records).items():
+    for path, slice in slices_of(options.names).items():
         savings = [
             s.name for s in SAVINGS if (s.engine is Engine.CERTIFIED) == slice.has_free_lengths
         ]
         more = LIMITS if slice.has_free_lengths else ()
         tables.append(_without(path, slice.name, slice.name, [*savings, ALL], more, options))
         if not slice.has_free_lengths:
-            turned, subject = (
-                ("--slice", ",".join(slice.axis_names[::-1])),
-                f"{slice.name}, axes exchanged",
-            )
+            turned = "--slice", ",".join(slice.axis_names[::-1])
+            subject = f"{slice.name}, axes exchanged"
             tables.append(_without(path, slice.name, subject, ["axis-order"], turned, options))
     return pd.concat(tables)
 
@@ -115,11 +113,8 @@ def _without(
         jobs[0].usages.clear()
         turns(jobs, options)
     results = [RegionMap.from_json(job.said()) if job.usages else None for job in jobs]
-    rows = summary(jobs, "all made")
-    rows["differs"] = [
-        None if results[0] is None or result is None else difference(results[0], result)
-        for result in results
-    ]
+    rows, first = summary(jobs, "all made"), results[0]
+    rows["differs"] = [difference(first, r) if first and r else None for r in results]
     return rows
 
 
@@ -140,20 +135,17 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser = argparse.ArgumentParser(
         "python -m ptmcad.studies.bench", description="Measure whole processes."
     )
-    chosen = parser.add_subparsers(dest="study", required=True)
-    for name, (_, _, words) in STUDIES.items():
-        command = chosen.add_parser(name, help=words, description=words)
-        what = "families" if name == "scaling" else "records"
-        command.add_argument(
-            what, nargs="*", type=str if what == "families" else Path, help="default: all"
-        )
-        command.add_argument(
-            "--out", type=Path, help="folder for the JSON file and what goes with it"
-        )
-        command.add_argument("--rounds", type=int, default=3, help="runs of each job (default 3)")
-        command.add_argument("--seed", type=int, default=1, help="of all that is drawn (default 1)")
-        command.add_argument(
-            "--timeout", type=float, default=300, help="seconds for a run (default %(default)g)"
+    words = "; ".join(f"{name}: {what}" for name, (_, _, what) in STUDIES.items())
+    parser.add_argument("study", choices=STUDIES, help=words)
+    parser.add_argument("names", nargs="*", help="records, or families of scaling (default: all)")
+    parser.add_argument("--out", type=Path, help="folder for the JSON file and what goes with it")
+    for name, kind, default, what in (
+        ("rounds", int, 3, "runs of each job"),
+        ("seed", int, 1, "of all that is drawn"),
+        ("timeout", float, 300, "seconds for a run"),
+    ):
+        parser.add_argument(
+            f"--{name}", type=kind, default=default, help=f"{what} (default %(default)g)"
         )
     options = parser.parse_args(arguments)
     for name in ("rounds", "timeout"):

@@ -55,16 +55,11 @@ UNKNOWN = 0.1
 """A wall whose distance is not proved to be less is left out of what distances are measured to."""
 
 
-class Wall(NamedTuple):
-    """A polyline of shape (k, 2), its distance from the wall, and the regions below and above it.
+Wall = tuple[Floats, float, int, int]
+"""A polyline of shape (k, 2), its distance from the wall, and the regions below and above it.
 
-    Over the topmost wall, which is the window's edge, there is no region: `above` is -1.
-    """
-
-    points: Floats
-    distance: float
-    below: int
-    above: int
+Over the topmost wall, which is the window's edge, there is no region: -1 is above.
+"""
 
 
 class Truth(NamedTuple):
@@ -88,10 +83,8 @@ class Truth(NamedTuple):
     def doubts(self) -> Floats:
         """For each region the area in which walls may be, beside their polylines."""
         found = np.full(len(self.counts), ROUNDING)
-        for wall in self.walls:
-            found[[wall.below, wall.above]] += wall.distance * (
-                wall.points[-1, 0] - wall.points[0, 0]
-            )
+        for points, apart, *sides in self.walls:
+            found[sides] += apart * (points[-1, 0] - points[0, 0])
         return found
 
 
@@ -157,8 +150,13 @@ def truth(
             (np.array(line.points, dtype=float), float(line.distance)) for line in of_stack
         ]
         polylines.append((np.array([[left, 1.0], [right, 1.0]]), 0.0))
-        found = (Wall(*line, *sides) for line, sides in zip(polylines, pairwise(here), strict=True))
-        stacks.append([wall for wall in found if wall.below != wall.above])
+        stacks.append(
+            [
+                (*line, below, above)
+                for line, (below, above) in zip(polylines, pairwise(here), strict=True)
+                if below != above
+            ]
+        )
     upright = [
         (at, *part)
         for at, (before, after) in zip(ends[1:-1], pairwise(stacks), strict=True)
@@ -177,12 +175,12 @@ def truth(
 def _between(left: Sequence[Wall], right: Sequence[Wall]) -> Iterator[tuple[float, float]]:
     """The parts of the fibre over a critical value on whose sides different regions are."""
     sides = [
-        (walls, [float(wall.points[end, 1]) for wall in walls])
+        (walls, [float(points[end, 1]) for points, *_ in walls])
         for walls, end in ((left, -1), (right, 0))
     ]
     for low, high in pairwise(sorted({0.0, *sides[0][1], *sides[1][1]})):
         one, other = (
-            walls[int(np.searchsorted(heights, (low + high) / 2))].below for walls, heights in sides
+            walls[int(np.searchsorted(heights, (low + high) / 2))][2] for walls, heights in sides
         )
         if one != other:
             yield low, high
@@ -272,10 +270,8 @@ def _error(
     drawn : the boundary between them, as of `distance`.
     least : the share that is undetermined.
     """
-    right, areas = (
-        shown_areas(truth, pieces, shown),
-        shown_areas(truth, np.array([[0.0, 1.0, 0.0, 1.0]])),
-    )
+    right = shown_areas(truth, pieces, shown)
+    areas = shown_areas(truth, np.array([[0.0, 1.0, 0.0, 1.0]]))
     doubts = truth.doubts()
     wrong, doubt = 1 - float(right.sum()), float(doubts.sum()) / 2 + ROUNDING
     bounds = (float(np.clip(x, least, 1.0)) for x in (wrong - doubt, wrong + doubt))
@@ -301,11 +297,11 @@ def shown_areas(truth: Truth, pieces: Floats, shown: np.ndarray | None = None) -
     pieces : disjoint rectangles as rows (left, right, bottom, top).
     """
     found = np.zeros(len(truth.counts))
-    for wall in truth.walls:
-        for region, sign in ((wall.below, 1), (wall.above, -1)):
+    for points, _, below, above in truth.walls:
+        for region, sign in ((below, 1), (above, -1)):
             if region >= 0:
                 own = pieces if shown is None else pieces[shown == truth.counts[region]]
-                found[region] += sign * _below(wall.points, own)
+                found[region] += sign * _below(points, own)
     return found
 
 
@@ -318,16 +314,15 @@ def _below(points: Floats, pieces: Floats) -> float:
     chord += first[of]
     left, right = np.maximum(pieces[of, 0], u[chord]), np.minimum(pieces[of, 1], u[chord + 1])
     slope = (v[chord + 1] - v[chord]) / (u[chord + 1] - u[chord])
-    ends = np.sort(
-        [v[chord] + (left - u[chord]) * slope, v[chord] + (right - u[chord]) * slope], axis=0
-    )
-    low, high = ends - pieces[of, 2]
+    across = np.stack([left, right]) - u[chord]
+    ends = np.sort(v[chord] + across * slope - pieces[of, 2], axis=0)
+    low, high = ends
     tall = pieces[of, 3] - pieces[of, 2]
-    inside = np.clip(ends - pieces[of, 2], 0, tall)
-    risen = (inside[1] - inside[0]) * (inside[0] + inside[1]) / 2
+    first, last = np.clip(ends, 0, tall)
+    risen = (last - first) * (first + last) / 2
     whole = (high - np.maximum(low, tall)).clip(0) * tall
     with np.errstate(divide="ignore", invalid="ignore"):
-        mean = np.where(high > low, (risen + whole) / (high - low), inside[0])
+        mean = np.where(high > low, (risen + whole) / (high - low), first)
     return float(((right - left).clip(0) * mean).sum())
 
 
@@ -343,13 +338,13 @@ def distance(truth: Truth, drawn: Floats, spacing: float) -> Bounds | None:
     -------
     None when just one of the two is empty.
     """
-    walls = [w for w in truth.walls if w.above >= 0 and w.distance < UNKNOWN]
-    chords = [np.concatenate([w.points[:-1], w.points[1:]], axis=1) for w in walls]
+    walls = [w for w in truth.walls if w[3] >= 0 and w[1] < UNKNOWN]
+    chords = [np.concatenate([points[:-1], points[1:]], axis=1) for points, *_ in walls]
     upright = truth.upright[:, [0, 1, 0, 2]]
     segments = np.concatenate([*chords, upright])
     if not len(segments) or not len(drawn):
         return (0.0, 0.0) if not len(segments) and not len(drawn) else None
-    apart = max((w.distance for w in walls), default=0.0)
+    apart = max((w[1] for w in walls), default=0.0)
     low_ends, high_ends = drawn[:, ::2], drawn[:, 1::2]
     size, centre = high_ends - low_ends, (low_ends + high_ends) / 2
     along = np.eye(2)[size.argmax(axis=1)] * size / 2

@@ -22,7 +22,7 @@ from fractions import Fraction
 from functools import partial
 from pathlib import Path
 from statistics import median
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -31,24 +31,13 @@ from ptmcad.errors import PtmcadError
 from ptmcad.show.render.printing import save
 from ptmcad.studies.bench.harness import Job, Row, classification, summary, turns
 from ptmcad.studies.bench.process import Usage
-from ptmcad.studies.picture import STYLES, Curve, Mark, draw
+from ptmcad.studies.picture import STYLES, Curve, draw
 
 SHIFT = Fraction(1, 100)
 """What a bend's coefficients' moduli add up to at most: the window's edge meets the same curves in
 the same order.
 """
 MAX_COEFFICIENT = 9
-
-
-class GrowingFamily(NamedTuple):
-    """One family: what grows, its sizes, the record for a size and a seed, and its number of
-    regions.
-    """
-
-    title: str
-    sizes: tuple[int, ...]
-    record: Callable[[int, int], Row]
-    regions: Callable[[int], int]
 
 
 def _record(axes: dict[str, Sequence[Any]], **parameters: Any) -> Row:
@@ -84,12 +73,17 @@ def fold(n: int, seed: int = 0) -> Row:
     return _record({"x": [-1, 1], "y": [0, 2]}, rho="y", L2=f"1 + ({terms})/2")
 
 
-FAMILIES = {
-    "degree": GrowingFamily("Degree of the curves: no loads", (2, 4, 6, 8, 12, 16), unloaded, lambda n: 4),
+FAMILIES: dict[
+    str, tuple[str, tuple[int, ...], Callable[[int, int], Row], Callable[[int], int]]
+] = {
+    "degree": ("Degree of the curves: no loads", (2, 4, 6, 8, 12, 16), unloaded, lambda n: 4),
     # below 2 rho = |T_n|/2 one region on either side of each of the n zeros; that of two; that
     # above
-    "fold": GrowingFamily("Folds along one axis", (2, 4, 8, 16, 32), fold, lambda n: n + 3),
+    "fold": ("Folds along one axis", (2, 4, 8, 16, 32), fold, lambda n: n + 3),
 }  # fmt: skip
+"""Of each family what grows, its sizes, the record for a size and a seed, and its number of
+regions.
+"""
 
 
 def measure(options: argparse.Namespace) -> pd.DataFrame:
@@ -101,37 +95,29 @@ def measure(options: argparse.Namespace) -> pd.DataFrame:
     PtmcadError
         When there is no such family.
     """
-    names = options.families or list(FAMILIES)
+    names = options.names or list(FAMILIES)
     unknown = [name for name in names if name not in FAMILIES]
     if unknown:
         raise PtmcadError(f"no family {unknown[0]!r}; there are {', '.join(FAMILIES)}")
     jobs = []
     with tempfile.TemporaryDirectory() as folder:
-        for name, n in [(family, size) for family in names for size in FAMILIES[family].sizes]:
-            family, record = FAMILIES[name], Path(folder, f"{name}-{n}.yaml")
-            record.write_text(
-                json.dumps({"name": record.stem, **family.record(n, options.seed)}),
-                encoding="utf-8",
-            )
-            asked = classification(record, record.stem, Path(folder), "--format", "json")
-            jobs.append(
-                Job(name, family.title, str(n), **asked, check=partial(_unlike, family.regions(n)))
-            )
+        for name, (title, sizes, record, regions) in ((n, FAMILIES[n]) for n in names):
+            for n in sizes:
+                path = Path(folder, f"{name}-{n}.yaml")
+                text = json.dumps({"name": path.stem, **record(n, options.seed)})
+                path.write_text(text, encoding="utf-8")
+                asked = classification(path, path.stem, Path(folder), "--format", "json")
+                check = partial(_unlike, regions(n))
+                jobs.append(Job(name, title, str(n), **asked, check=check))
         turns(jobs, options)
     taken = [[json.loads(usage.output)["timings"]["total"] for usage in job.usages] for job in jobs]
     rows = summary(jobs).assign(
         computing=pd.Series([median(s) if s else None for s in taken], dtype=float).round(5)
     )
+    known = rows.dropna(subset="computing").astype({"setting": int})
     laws = [
-        {
-            "subject": name,
-            "what": FAMILIES[str(name)].title,
-            "setting": "fit",
-            "exponent": exponent(own),
-        }
-        for name, own in rows.dropna(subset="computing")
-        .astype({"setting": int})
-        .groupby("subject", sort=False)
+        {"subject": name, "what": what, "setting": "fit", "exponent": exponent(own)}
+        for (name, what), own in known.groupby(["subject", "what"], sort=False)
     ]
     return pd.concat([rows, pd.DataFrame(laws)], ignore_index=True)
 
@@ -155,12 +141,18 @@ def exponent(rows: pd.DataFrame) -> float | None:
 
 def save_picture(rows: pd.DataFrame, folder: Path) -> None:
     """Draw the seconds of the computation along all families into scaling.svg."""
-    curves = []
-    for style, (title, own) in zip(
-        STYLES, rows.dropna(subset="computing").groupby("what", sort=False), strict=False
-    ):
-        places = zip(own["setting"].astype(float), own["computing"], strict=True)
-        curves.append(Curve(str(title), style, [Mark(n, seconds, n, n) for n, seconds in places]))
+    known = rows.dropna(subset="computing").groupby("what", sort=False)
+    curves = [
+        Curve(
+            str(title),
+            style,
+            [
+                (n, s, n, n, "")
+                for n, s in zip(own["setting"].astype(float), own["computing"], strict=True)
+            ],
+        )
+        for style, (title, own) in zip(STYLES, known, strict=False)
+    ]
     if curves:
         figure = draw("How cost grows", "size", "seconds of the computation, medians", {"": curves})
         save(figure, folder / "scaling.svg")

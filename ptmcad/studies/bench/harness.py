@@ -165,7 +165,8 @@ def measurement(method: str, setting: str, **more: Any) -> Row:
     """What is known of one method at one setting; ``docs/bench.schema.json`` says what each key
     means.
     """
-    return dict.fromkeys(_KEYS) | {
+    return {
+        **dict.fromkeys(_KEYS),
         "method": method,
         "setting": setting,
         "reason": "",
@@ -196,12 +197,9 @@ def turns(jobs: Sequence[Job], options: argparse.Namespace) -> None:
 
 def times(seconds: Sequence[float]) -> Row:
     """How many runs, and their median and spread, rounded to 0.1 ms."""
-    spread = {
-        "median": statistics.median(seconds),
-        "minimum": min(seconds),
-        "maximum": max(seconds),
-    }
-    return {"runs": len(seconds)} | {name: round(x, 4) for name, x in spread.items()}
+    spread = statistics.median(seconds), min(seconds), max(seconds)
+    names = ("median", "minimum", "maximum")
+    return {"runs": len(seconds), **{n: round(x, 4) for n, x in zip(names, spread, strict=True)}}
 
 
 def summary(jobs: Sequence[Job], over: str = "", figure: str = "processor_seconds") -> pd.DataFrame:
@@ -242,13 +240,10 @@ def made_with() -> dict[str, dict[str, str]]:
         "system": f"{platform.system()} {platform.machine()}",
         "load before": " ".join(f"{load:.2f}" for load in os.getloadavg()),
     }
-    where = shutil.which("qepcad")
-    said = (
-        run((where, "-v"), timeout=10).output.strip().splitlines() or ["unknown"]
-        if where
-        else ["not installed"]
-    )
-    versions = {"python": platform.python_version(), **installed(PACKAGES), "qepcad": said[0]}
+    said = "not installed"
+    if where := shutil.which("qepcad"):
+        said = (run((where, "-v"), timeout=10).output.strip() or "unknown").splitlines()[0]
+    versions = {"python": platform.python_version(), **installed(PACKAGES), "qepcad": said}
     return {"machine": machine, "versions": versions}
 
 

@@ -89,7 +89,7 @@ def write_study(study: Row) -> str:
 
 def write_table(study: Row) -> str:
     """The study as CSV, one row for each measurement and count."""
-    text: str = frame(study).drop(columns="note").to_csv(index=False, lineterminator="\n")
+    text = frame(study).drop(columns="note").to_csv(index=False, lineterminator="\n")
     return text
 
 

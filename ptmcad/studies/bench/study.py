@@ -15,11 +15,10 @@ import json
 import random
 import sys
 import tempfile
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from importlib.util import find_spec
 from itertools import zip_longest
 from pathlib import Path
-from typing import NamedTuple
 
 import numpy as np
 
@@ -69,22 +68,10 @@ MAP_SECONDS = 120.0
 WARM_UP_SECONDS = 300.0
 
 
-class Rival(NamedTuple):
-    """One of the methods, as ``programs.yaml`` has them: its title, how a setting is called, and
-    the settings.
-
-    Those are in order from the coarsest; so many of them are run when it has to be quick. It may
-    need a package.
-    """
-
-    title: str
-    label: str
-    settings: Sequence[str]
-    quick: int
-    needs: str = ""
-
-
-RIVALS = {name: Rival(**entry) for name, entry in programs.TEXTS["rivals"].items()}
+RIVALS: Mapping[str, Row] = programs.TEXTS["rivals"]
+"""The methods as ``programs.yaml`` has them: its title, how a setting is called, the settings from
+the coarsest, how many of them are run when it has to be quick, and the package that it may need.
+"""
 
 
 def jobs(method: str, case: Case) -> list[Job] | str:
@@ -94,13 +81,13 @@ def jobs(method: str, case: Case) -> list[Job] | str:
         return "square roots: springs have a free length"
     if method in GRIDS and slice.mechanism != "ptm":
         return f"the sextic is the paper's mechanism's, not that of {slice.mechanism}"
-    if rival.needs and find_spec(rival.needs) is None:
-        return f"{rival.needs} is not installed (make bench installs it)"
-    settings = rival.settings[: rival.quick if case.quick else None]
+    if (package := rival.get("needs")) and find_spec(package) is None:
+        return f"{package} is not installed (make bench installs it)"
+    settings = rival["settings"][: rival["quick"] if case.quick else None]
     start = (
         _start_engine if method in ENGINES else _start_grid if method in GRIDS else programs.start
     )
-    asked = {rival.label.format(setting): start(method, case, setting) for setting in settings}
+    asked = {rival["label"].format(setting): start(method, case, setting) for setting in settings}
     found = [
         Job(slice.name, method, label, **more)
         for label, more in asked.items()
@@ -113,19 +100,9 @@ def jobs(method: str, case: Case) -> list[Job] | str:
 
 
 def _start_engine(engine: str, case: Case, setting: str) -> Asked:
-    options = (
-        "--engine",
-        engine,
-        "--count",
-        finest_count(case.slice),
-        ENGINES[engine],
-        setting,
-        "--format",
-        "json",
-    )
-    asked = classification(
-        case.record, case.slice.name, case.folder / f"{engine}-{setting}", *options
-    )
+    folder = case.folder / f"{engine}-{setting}"
+    options = ("--engine", engine, "--count", finest_count(case.slice), ENGINES[engine], setting)
+    asked = classification(case.record, case.slice.name, folder, *options, "--format", "json")
     return asked | {"saves": engine == "certified"}
 
 
@@ -138,20 +115,16 @@ def finest_count(slice: Slice) -> str:
 
 def _read_map(case: Case, job: Job) -> Row:
     result = RegionMap.from_json(job.said())
-    notes = (
-        ["stopped at the limit, short of its tolerance"] if result.status is Status.PARTIAL else []
-    )
-    if (
-        case.exact is not None
-        and result.cover is None
-        and (wrong := difference(case.exact, result))
-    ):
+    partial = result.status is Status.PARTIAL
+    notes = ["stopped at the limit, short of its tolerance"] * partial
+    exact = result.cover is None
+    if case.exact is not None and exact and (wrong := difference(case.exact, result)):
         raise PtmcadError(f"two exact maps of {case.slice.name} differ: {wrong}")
     if not case.known:
         notes.append(NO_MAP if case.exact is None else NO_WALLS)
         share = outward(result.undetermined, result.undetermined)
         found = {case.slice.count.value: figures(share, share[1])}
-    elif result.cover is None:
+    elif exact:
         right = figures((0.0, 0.0), 0.0, missed=0, faintest=(1.0, 1.0), distance=(0.0, 0.0))
         found = {
             count: right | {"regions": len(truth.counts)} for count, truth in case.known.items()
@@ -160,10 +133,9 @@ def _read_map(case: Case, job: Job) -> Row:
         errors = {count: cover_error(truth, result, count) for count, truth in case.known.items()}
         found = {count: error for count, error in errors.items() if error is not None}
     window = result.slice.area
-    widest = (
-        max((high - low for low, high in area_by_count(result).values()), default=window) / window
-    )
-    return {"figures": found, "note": "; ".join(notes), "area_width": outward(0, widest)[1]}
+    widest = max((high - low for low, high in area_by_count(result).values()), default=window)
+    width = outward(0, widest / window)[1]
+    return {"figures": found, "note": "; ".join(notes), "area_width": width}
 
 
 def difference(one: RegionMap, other: RegionMap) -> str:

@@ -13,7 +13,7 @@ from typing import Any
 
 import pandas as pd
 
-from ptmcad.process.output import Writer, text_writer, write_files
+from ptmcad.process.output import text_writer, write_files
 from ptmcad.show.columns import aligned
 from ptmcad.show.render.printing import save as save_figure
 from ptmcad.studies import texts as tables
@@ -120,37 +120,26 @@ def curves(study: Row) -> list[Curve]:
     exact maps' areas.
     """
     table = finest(study).dropna(subset="seconds_median")
+    errors = {method: table[table["method"] == method] for method in RIVALS}
     found = [
-        _curve(
-            number,
-            rival.title,
-            table[table["method"] == method],
-            "wrong_low",
-            "wrong_high",
-            _LABELLED.get(method),
-        )
-        for number, (method, rival) in enumerate(RIVALS.items())
+        Curve(RIVALS[method]["title"], style, _marks(rows, "wrong_low", "wrong_high", method))
+        for style, (method, rows) in zip(STYLES, errors.items(), strict=False)
     ]
-    widths = table[
-        (table["method"] == "exact") & (table["area_width"] > 0)
-    ]  # another kind of error
-    title = f"{RIVALS['exact'].title}: width of the area bounds"
-    found.insert(1, _curve(len(RIVALS), title, widths, "area_width", "area_width", None))
+    widths = errors["exact"][errors["exact"]["area_width"] > 0]  # another kind of error
+    title = f"{RIVALS['exact']['title']}: width of the area bounds"
+    marks = _marks(widths, "area_width", "area_width")
+    found.insert(1, Curve(title, STYLES[len(RIVALS)], marks))
     return [curve for curve in found if curve.marks]
 
 
-def _curve(
-    style: int, title: str, rows: pd.DataFrame, low: str, high: str, before: str | None
-) -> Curve:
-    """A curve through the middles of bounds; settings stand beside it, without the words before
-    them.
-    """
-    marks = [
-        Mark(m["seconds_median"], (m[low] + m[high]) / 2, m["seconds_min"], m["seconds_max"],
-             "" if before is None else m["setting"].removeprefix(before))
+def _marks(rows: pd.DataFrame, low: str, high: str, method: str = "") -> list[Mark]:
+    """The middles of bounds; settings stand beside them, without the words before these."""
+    before = _LABELLED.get(method)
+    return [
+        (m["seconds_median"], (m[low] + m[high]) / 2, m["seconds_min"], m["seconds_max"],
+         "" if before is None else m["setting"].removeprefix(before))
         for m in rows.dropna(subset=low).to_dict("records")
     ]  # fmt: skip
-    return Curve(title, STYLES[style], marks)
 
 
 def curve_file(study: Row) -> str:
@@ -158,7 +147,7 @@ def curve_file(study: Row) -> str:
     series = [
         {"name": curve.name, "points": points}
         for curve in curves(study)
-        if (points := [[mark.x, mark.y] for mark in curve.marks if mark.y > 0])
+        if (points := [[x, y] for x, y, *_ in curve.marks if y > 0])
     ]
     text = (
         "Share of the window that is wrong or undetermined; for the exact engine, where that is 0, the width of its "
@@ -184,7 +173,7 @@ def save(study: Row, folder: Path) -> tuple[Path, ...]:
             draw(title, x, "share of the window", {"": drawn}, sentences(study)), path, dpi=DPI
         )
 
-    writers: dict[str, Writer] = {f"{name}.bench.csv": text_writer(write_table(study))}
+    writers = {f"{name}.bench.csv": text_writer(write_table(study))}
     if drawn:
         writers |= {f"{name}.bench.svg": picture, f"{name}.bench.png": picture}
         writers[f"{name}.error-time.json"] = text_writer(curve_file(study))

@@ -74,7 +74,7 @@ class Claim:
 @cache
 def texts() -> Mapping[str, Text]:
     """Every claim as it is written, in the order of the paper's sections."""
-    found: dict[str, Text] = yaml.safe_load(TEXTS.read_text(encoding="utf-8"))
+    found = yaml.safe_load(TEXTS.read_text(encoding="utf-8"))
     return {name: {**found.get(text.get("like", ""), {}), **text} for name, text in found.items()}
 
 

@@ -9,8 +9,8 @@ computed discriminant variety. Which they are is data, ``expressions.yaml``.
 from __future__ import annotations
 
 import re
+from collections.abc import Mapping
 from functools import cache
-from typing import NamedTuple
 
 import sympy as sp
 
@@ -39,13 +39,10 @@ _NAMES = {sp.Symbol(f"f{n}x"): f"f_{{{n}x}}" for n in (3, 4)}
 INTRODUCTION: str = TEXTS["introduction"].strip()
 
 
-class Equation(NamedTuple):
-    """One equation: its number in the paper, what it is, and both sides as text and LaTeX."""
-
-    number: str
-    what: str
-    text: str
-    latex: str
+Equation = Mapping[str, str]
+"""An equation: its ``number`` in the paper, ``what`` it is, and both sides as ``text`` and
+``latex``.
+"""
 
 
 @cache
@@ -66,9 +63,13 @@ def equations() -> tuple[Equation, ...]:
         elif "forces" not in entry:
             right = sp.expand(right.subs(_OVER_K))
         shown = _shown(right)
-        latex = f"{_LATEX.get(left, sp.latex(sp.Symbol(left)))} = {sp.latex(shown, symbol_names=_NAMES)}"
         result.append(
-            Equation(number, entry["what"], f"{left} = {sp.sstr(shown).replace('**', '^')}", latex)
+            {
+                "number": number,
+                "what": entry["what"],
+                "text": f"{left} = {sp.sstr(shown).replace('**', '^')}",
+                "latex": f"{_LATEX.get(left, sp.latex(sp.Symbol(left)))} = {sp.latex(shown, symbol_names=_NAMES)}",
+            }
         )
     return tuple(result)
 
@@ -83,7 +84,9 @@ def _shown(expression: Expr) -> Expr:
 
 def as_markdown() -> str:
     """The equations as a page of text."""
-    blocks = [text for e in equations() for text in (f"{e.number}: {e.what}", f"    {e.text}")]
+    blocks = [
+        text for e in equations() for text in ("{number}: {what}".format_map(e), f"    {e['text']}")
+    ]
     return page("# The paper's equations, corrected", INTRODUCTION, *blocks)
 
 
@@ -93,7 +96,11 @@ def as_latex() -> str:
     """
     blocks = []
     for e in equations():
-        title = f"{e.number}: {e.what}".replace("^", r"\textasciicircum{}").replace("_", r"\_")
-        blocks.append(rf"\noindent {title}" + "\n\\begin{dmath*}\n" + e.latex + "\n\\end{dmath*}")
+        title = (
+            "{number}: {what}".format_map(e).replace("^", r"\textasciicircum{}").replace("_", r"\_")
+        )
+        blocks.append(
+            rf"\noindent {title}" + "\n\\begin{dmath*}\n" + e["latex"] + "\n\\end{dmath*}"
+        )
     names = re.sub(r"\b([fFLt])(\dx?)\b", r"$\1_{\2}$", INTRODUCTION)
     return "\n".join([TEXTS["latex"].rstrip(), rf"{names}\par", *blocks, "\\end{document}\n"])

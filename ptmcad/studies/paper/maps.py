@@ -266,15 +266,10 @@ def unloaded_widths(lengths: Sequence[str]) -> Facts:
 
 def falling(figure: str, values: Sequence[str], limit: Mapping[str, Any] | None = None) -> Facts:
     """Whether the range along rho gets narrower from each value of the other axis to the next."""
-    found = widths_at(figure, values)
-    near = True
+    found, near = widths_at(figure, values), True
     if limit is not None:  # before the first value the range is that of another slice
-        whole = operation(**limit).width
-        near = (
-            found[0].high < whole.low + FINE
-            and found[0].low > Fraction(99, 100)
-            and whole.center == 1
-        )
+        first, whole = found[0], operation(**limit).width
+        near = first.high < whole.low + FINE and first.low > Fraction(99, 100) and whole.center == 1
     listed = ", ".join(f"{x}: {float(w.center):.9f}" for x, w in zip(values, found, strict=True))
     return {"falls": fall(found), "near the limit": near, "widths": listed}
 

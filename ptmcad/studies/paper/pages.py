@@ -150,7 +150,7 @@ def index_html(
         if c.verdict in NOT_AS_PRINTED
     ]
     texts = [
-        FORMS["equation"].format(number=escape(e.number), what=escape(e.what), text=escape(e.text))
+        FORMS["equation"].format_map({key: escape(said) for key, said in e.items()})
         for e in formulas
     ]
     body = FORMS["index"].format(

@@ -44,7 +44,7 @@ TOLERANCE = arb(10) ** -60
 
 
 @dataclass(frozen=True)
-class Elimination:
+class _Elimination:
     """Both equations at a design, squared, and what eliminating t1 leaves.
 
     Attributes
@@ -66,7 +66,7 @@ class Elimination:
 
 
 @cache
-def squared(design: Design) -> Elimination:
+def squared(design: Design) -> _Elimination:
     """The equations at a design, after two squarings and elimination."""
     numbers = [sp.Rational(x) for x in design]
     # all are lengths, loads over k too: scaling them leaves the angles as they are
@@ -99,7 +99,7 @@ def squared(design: Design) -> Elimination:
             circle = exponent
         else:
             factors[exponent] = factors.get(exponent, fmpz_poly([1])) * p
-    return Elimination(equations, int(polynomial.degree()), circle, dict(sorted(factors.items())))
+    return _Elimination(equations, int(polynomial.degree()), circle, dict(sorted(factors.items())))
 
 
 def _cleared(expression: Any, factor: Any) -> Any:
@@ -110,7 +110,7 @@ def _cleared(expression: Any, factor: Any) -> Any:
 
 
 @dataclass(frozen=True, slots=True)
-class SignedSolutions:
+class _SignedSolutions:
     """What the simple roots are.
 
     Attributes
@@ -135,7 +135,7 @@ class SignedSolutions:
 
 
 @cache
-def signed_solutions(design: Design) -> SignedSolutions:
+def signed_solutions(design: Design) -> _SignedSolutions:
     """Which of the simple roots at a design solve both equations, with lengths of some signs.
 
     Raises
@@ -166,7 +166,7 @@ def signed_solutions(design: Design) -> SignedSolutions:
                 )  # t1 is a rational function of t2, so it is real where t2 is
             else:
                 opposed += 1
-    return SignedSolutions(tuple(found), opposed, unsettled)
+    return _SignedSolutions(tuple(found), opposed, unsettled)
 
 
 def _complex_roots(p: fmpz_poly) -> list[acb]:
@@ -195,9 +195,8 @@ def _vanishing(values: Mapping[str, Any], tangents: Sequence[acb]) -> list[set[S
     zeros: list[set[Signs]] = [set(), set()]
     for signs in product((1, -1), repeat=3):
         # any continuous choice of the roots serves: both signs are tried
-        for found, slope in zip(
-            zeros, derivatives(values, circles, partial(_root, iter(signs)))[0], strict=True
-        ):
+        slopes, _ = derivatives(values, circles, partial(_root, iter(signs)))
+        for found, slope in zip(zeros, slopes, strict=True):
             if slope.contains(0):
                 found.add(signs)
     return zeros

@@ -147,14 +147,8 @@ def random_case(seed: int, number: int) -> Case:
     if kind in ("fold", "cusp"):
         at, distance = _degenerate(dice, cusp=kind == "cusp"), TEN ** -dice.randint(3, MAX_EXPONENT)
         side, (total, stable) = dice.choice([(1, at.many), (-1, FEW)])
-        return Case(
-            name,
-            family,
-            distance,
-            Question(at.beside(side * distance)),
-            CONSTRUCTED,
-            f"{total}/{stable}",
-        )
+        question, expected = Question(at.beside(side * distance)), f"{total}/{stable}"
+        return Case(name, family, distance, question, CONSTRUCTED, expected)
     original, expected = tame(dice)
     scale = TEN ** (dice.choice([-1, 1]) * dice.randint(3, MAX_EXPONENT))
     question = Question(scaled(changed(original, kind), scale, TEN ** dice.randint(-9, 9)))
@@ -193,7 +187,7 @@ def tame(dice: random.Random) -> tuple[Values, str]:
             poses = sextic_poses(p)
         except ArithmeticError:  # a degenerate point
             continue
-        return p, f"{len(poses)}/{sum(pose.index == 0 for pose in poses)}"
+        return p, f"{len(poses)}/{sum(index == 0 for *_, index in poses)}"
 
 
 def _degenerate(dice: random.Random, *, cusp: bool) -> Degenerate:
@@ -246,16 +240,15 @@ def summary(campaign: Row, wanted: int) -> list[str]:
     ----------
     wanted : how many cases were to be run.
     """
-    rows = campaign["cases"]
+    rows, number = campaign["cases"], len(campaign["cases"])
     wrong = [row for row in rows if not row["right"]]
-    lines = [f"ptmcad is right in {len(rows) - len(wrong)} of {len(rows)} cases"]
-    lines.append(
-        f"double precision is wrong in {sum(not row['double_right'] for row in rows)} of {len(rows)}"
-    )
-    lines += [f"wrong: {row['name']}: {'; '.join(row['remarks'])}" for row in wrong]
-    return lines + (
-        [f"stopped: {wanted - len(rows)} cases were not run"] if wanted > len(rows) else []
-    )
+    double = sum(not row["double_right"] for row in rows)
+    return [
+        f"ptmcad is right in {number - len(wrong)} of {number} cases",
+        f"double precision is wrong in {double} of {number}",
+        *(f"wrong: {row['name']}: {'; '.join(row['remarks'])}" for row in wrong),
+        *([f"stopped: {wanted - number} cases were not run"] if wanted > number else []),
+    ]
 
 
 def listing(cases: Sequence[Case]) -> str:
@@ -270,10 +263,8 @@ def to_json(campaign: Row) -> str:
 
 def to_csv(campaign: Row) -> str:
     """The same, one row for each case."""
-    text, rows = (
-        io.StringIO(),
-        [{**row, "remarks": "; ".join(row["remarks"])} for row in campaign["cases"]],
-    )
+    text = io.StringIO()
+    rows = [{**row, "remarks": "; ".join(row["remarks"])} for row in campaign["cases"]]
     if rows:
         writer = csv.DictWriter(text, list(rows[0]), lineterminator="\n")
         writer.writeheader()
@@ -299,7 +290,7 @@ colour.
 
 def draw_stress(outcomes: Sequence[Row]) -> Any:
     """One small plot for each family of points; the figure's label is its description."""
-    from ptmcad.studies.picture import Curve, Mark, draw  # brings matplotlib
+    from ptmcad.studies.picture import Curve, draw  # brings matplotlib
 
     points = [o for o in outcomes if o["condition"] is not None or o["error"] is not None]
     double, ours = (sum(not o[key] for o in points) for key in ("double_right", "right"))
@@ -307,13 +298,12 @@ def draw_stress(outcomes: Sequence[Row]) -> Any:
     panels: dict[str, list[Curve]] = {o["family"]: [] for o in points}
     for family, curves in panels.items():
         for label, key, right, marker, color in MARKS:
-            drawn = [
-                o for o in points if o["family"] == family and right in (None, o["double_right"])
-            ]
-            places = [float(Fraction(o["stiffness"])) for o in drawn]
-            heights = [NO_POSE if o[key] is None else max(o[key], MIN_DRAWN_ERROR) for o in drawn]
-            marks = [Mark(x, y, x, x) for x, y in zip(places, heights, strict=True)]
-            curves.append(
-                Curve(label, {"marker": marker, "color": color, "linestyle": "none"}, marks)
-            )
+            marks = []
+            for o in points:
+                if o["family"] == family and right in (None, o["double_right"]):
+                    x = float(Fraction(o["stiffness"]))
+                    y = NO_POSE if o[key] is None else max(o[key], MIN_DRAWN_ERROR)
+                    marks.append((x, y, x, x, ""))
+            style = {"marker": marker, "color": color, "linestyle": "none"}
+            curves.append(Curve(label, style, marks))
     return draw(TITLE, "", "error", panels, (NOTE, found))

@@ -207,9 +207,12 @@ def degenerate(
     # (k2 + k3) rho + F3x = a1 and (k1 + k3) rho - F4x = a2
     a1, a2 = k3 * second * c2 + h11 * c1 / first, k3 * first * c1 + h12 * h12 / h11 * c2 / second
     parameters = {
-        **dict(
-            zip(("L1", "L2", "rho", "k1", "k2", "k3"), (first, second, rho, *springs), strict=True)
-        ),
+        "L1": first,
+        "L2": second,
+        "rho": rho,
+        "k1": k1,
+        "k2": k2,
+        "k3": k3,
         "F3": s1 * (a1 - k3 * second * c2) / c1 - k3 * second * s2,
         "F4": (a2 * s2 - k3 * first * s12) / c2,
         "F3x": a1 - (k2 + k3) * rho,

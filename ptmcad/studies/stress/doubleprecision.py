@@ -22,7 +22,6 @@ References: Krawczyk, Computing 4 (1969); Neumaier, Interval Methods for Systems
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -42,15 +41,10 @@ ROUNDS = 60
 """Of Newton's method."""
 
 
-@dataclass(frozen=True, slots=True)
-class IndexedPose:
-    """A pose that is, or is taken for, an equilibrium: its angles, and the Hessian's number of
-    negative eigenvalues.
-    """
-
-    th1: Any
-    th2: Any
-    index: int
+IndexedPose = tuple[Any, Any, int]
+"""The angles of a pose that is, or is taken for, an equilibrium, and the Hessian's number of
+negative eigenvalues.
+"""
 
 
 def in_balls(parameters: Mapping[str, arb], angles: Sequence[arb]) -> tuple[arb_mat, arb_mat]:
@@ -93,12 +87,12 @@ def newton_pose(
         undecided = not determinant < 0 and not (determinant > 0 and not first.contains(0))
         if undecided or not all(reach < radius for reach in reaches):
             return None
-        return IndexedPose(box[0], box[1], 1 if determinant < 0 else 0 if first > 0 else 2)
+        return box[0], box[1], 1 if determinant < 0 else 0 if first > 0 else 2
 
 
 def apart(first: IndexedPose, second: IndexedPose) -> arb:
     """The larger of the distances of both angles, on the circle."""
-    gaps = [arb(a) - b for a, b in ((first.th1, second.th1), (first.th2, second.th2))]
+    gaps = [arb(a) - b for a, b in zip(first[:2], second[:2], strict=True)]
     turn = 2 * arb.pi()
     one, other = (abs(gap - turn * (gap / turn + 0.5).mid().floor()) for gap in gaps)
     return arb(one.max(other))
@@ -135,14 +129,11 @@ def sextic_poses(parameters: Parameters) -> tuple[IndexedPose, ...]:
     missing = 6 - polynomial.degree()
     for bits in BITS if polynomial else ():
         with ctx.workprec(bits):
-            factors: Any = [
-                (f.complex_roots(), multiplicity)
-                for f, multiplicity in polynomial.numer().factor()[1]
-            ]
+            factors: Any = polynomial.numer().factor()[1]
             real = [
                 (root.real, multiplicity)
-                for roots, multiplicity in factors
-                for root, _ in roots
+                for factor, multiplicity in factors
+                for root, _ in factor.complex_roots()
                 if root.imag == 0
             ]
             seconds = [2 * t.atan() for t, _ in real] + [arb.pi()] * (missing > 0)
@@ -179,11 +170,5 @@ def double_poses(parameters: Parameters) -> tuple[IndexedPose, ...] | None:
             eigenvalues = np.linalg.eigvalsh(np.array([[h11, h12], [h12, h22]]).transpose(2, 0, 1))
     except np.linalg.LinAlgError:
         return None
-    return tuple(
-        map(
-            IndexedPose,
-            th1[kept].tolist(),
-            th2[kept].tolist(),
-            (eigenvalues < 0).sum(axis=1).tolist(),
-        )
-    )
+    indices = (eigenvalues < 0).sum(axis=1)
+    return tuple(zip(*(values.tolist() for values in (th1[kept], th2[kept], indices)), strict=True))

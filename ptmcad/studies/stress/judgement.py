@@ -33,7 +33,7 @@ from ptmcad.studies.stress.doubleprecision import (
     proved_poses,
     sextic_poses,
 )
-from ptmcad.text.balls import ball_of, exact
+from ptmcad.text.balls import ball_of, ball_over, exact
 from ptmcad.text.expressions import Expression, values_at
 
 GRID = 16
@@ -65,18 +65,16 @@ Row = dict[str, Any]
 
 def judge(case: Case, found: Any) -> Row:
     """The verdict on an answer to the case, without its cost."""
-    judgements: dict[str, Callable[[Case, Any], tuple[Checks, Row]]] = {
-        "point": _point,
-        "line": _line,
-    }
+    judgements: dict[str, Callable[[Case, Any], tuple[Checks, Row]]]
+    judgements = {"point": _point, "line": _line}
     with ctx.workprec(_BITS):
         checks, row = judgements.get(case.question.kind, _map)(case, found)
     remarks = [remark for holds, remark in checks if not holds]
-    known: Row = {"expected": case.expected, "right": not remarks, "remarks": remarks}
-    numbers = {
-        name: x if not isinstance(x, float) or isfinite(x) else None for name, x in row.items()
-    }
-    return {**known, "error": None, "condition": None, "bits": 0, **numbers}
+    known = {"expected": case.expected, "right": not remarks, "remarks": remarks}
+    for name, x in row.items():
+        if isinstance(x, float) and not isfinite(x):
+            row[name] = None
+    return {**known, "error": None, "condition": None, "bits": 0, **row}
 
 
 Checks = list[tuple[bool, str]]
@@ -85,7 +83,7 @@ Checks = list[tuple[bool, str]]
 
 def _stable(poses: Sequence[IndexedPose] | None) -> int:
     """How many poses are stable; -1 where there is no answer."""
-    return -1 if poses is None else sum(pose.index == 0 for pose in poses)
+    return -1 if poses is None else sum(index == 0 for *_, index in poses)
 
 
 def _shown(poses: Sequence[IndexedPose] | None) -> str:
@@ -105,9 +103,7 @@ def _point(case: Case, found: Poses) -> tuple[Checks, Row]:
     double = double_poses(parameters)
     ours = [_boxed(pose) for pose in found.equilibria]
     if free_lengths(parameters):
-        known = proved_poses(
-            parameters, [(pose.th1, pose.th2) for pose in (*(double or ()), *ours)]
-        )
+        known = proved_poses(parameters, [pose[:2] for pose in (*(double or ()), *ours)])
     else:
         known = sextic_poses(parameters)
     text, other, error = f"{len(ours)}/{found.stable}", _shown(known), _error(ours, known)
@@ -139,8 +135,8 @@ def _point(case: Case, found: Poses) -> tuple[Checks, Row]:
 
 def _boxed(pose: Pose) -> IndexedPose:
     """A pose of ptmcad's with balls that hold its enclosures."""
-    first, second = (ball_of(angle.low).union(ball_of(angle.high)) for angle in pose.angles)
-    return IndexedPose(first, second, -1 if pose.index is None else pose.index)
+    first, second = (ball_over(angle.low, angle.high) for angle in pose.angles)
+    return first, second, -1 if pose.index is None else pose.index
 
 
 def _error(found: Sequence[IndexedPose], reference: Sequence[IndexedPose]) -> Fraction | None:
@@ -149,11 +145,11 @@ def _error(found: Sequence[IndexedPose], reference: Sequence[IndexedPose]) -> Fr
     """
     left, largest = list(reference), Fraction(0)
     for pose in found:
-        inside = [r for r in left if r.index == pose.index and apart(pose, r).contains(0)]
+        inside = [r for r in left if r[2] == pose[2] and apart(pose, r).contains(0)]
         if not inside:
             return None
         left.remove(inside[0])
-        middle = IndexedPose(pose.th1.mid(), pose.th2.mid(), pose.index)
+        middle = pose[0].mid(), pose[1].mid(), pose[2]
         largest = max(largest, exact(apart(middle, inside[0]).mid()))
     return None if left else largest
 
@@ -231,11 +227,9 @@ def _expected(
     shown = "; ".join(
         f"{float(ball_of(low)):.10g} to {float(ball_of(high)):.10g}" for low, high in numbers
     )
+    text, expected = _text(stable), case.expected
     return [
-        (
-            _text(stable) == case.expected,
-            f"stable counts {_text(stable)}, but {case.expected} are expected",
-        ),
+        (text == expected, f"stable counts {text}, but {expected} are expected"),
         (
             met,
             f"the ends, or the area on which two are stable, are not where they should be: {shown}",

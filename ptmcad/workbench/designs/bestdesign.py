@@ -14,25 +14,18 @@ from typing import Any
 
 from ptmcad.answer.design import BestDesign, Evaluation
 from ptmcad.ask.members import in_common
-from ptmcad.errors import ConfigError
+from ptmcad.errors import ConfigError, LimitReached
 from ptmcad.extras import Extra, require
 from ptmcad.options import Options, Progress
 from ptmcad.question.config.designed import Aim, Design
 from ptmcad.question.config.designkey import design_from
 from ptmcad.question.shipped import RecordSource
-from ptmcad.text.flint_numbers import from_fraction, simplest_between, to_fraction
+from ptmcad.text.flint_numbers import simplest_fraction
 from ptmcad.text.parsing import share_for
-from ptmcad.workbench.designs.designbounds import Lengths
+from ptmcad.workbench.designs.designbounds import Lengths, bounded, bounder_of
 from ptmcad.workbench.designs.evaluation import Evaluate, Value, evaluator
-from ptmcad.workbench.designs.optimiser import Enough, Point, best_of, within
-from ptmcad.workbench.designs.proof import (
-    Proof,
-    bounded,
-    bounder_of,
-    exact_maximum,
-    most_on_lines,
-    place_of,
-)
+from ptmcad.workbench.designs.optimiser import Point, best_of, within
+from ptmcad.workbench.designs.proof import Proof, exact_maximum, most_on_lines, place_of
 
 TOLERANCE = Fraction(1, 100)
 BOXES = 100_000
@@ -116,7 +109,7 @@ class _DesignSearch:
     """The designs that have been evaluated, and the best of them; ends when the time is over."""
 
     def __init__(self, asked: Design, timeout: float | None, progress: Progress | None) -> None:
-        self.asked, self.progress = asked, progress
+        self.asked, self.report = asked, progress or (lambda _stage, _done, _total: None)
         self.deadline = None if timeout is None else perf_counter() + timeout
         self.value_of: Evaluate | None = None
         self.points: dict[Point, Value | None] = {}
@@ -125,10 +118,6 @@ class _DesignSearch:
     @property
     def over_time(self) -> bool:
         return self.deadline is not None and perf_counter() > self.deadline
-
-    def report(self, stage: str, done: int, total: int) -> None:
-        if self.progress is not None:
-            self.progress(stage, done, total)
 
     def run(self, tolerance: Fraction, seed: int, evaluations: int | None, boxes: int) -> Proof:
         """Search, and then prove; at the end the best design is evaluated once more by itself."""
@@ -155,23 +144,21 @@ class _DesignSearch:
         proof = bounded(asked, bounder, self._improved, tolerance, boxes, self._go_on)
         if space is not None:
             self._confirm()
-        return (
-            proof
-            if proof.bound is None
-            else proof._replace(bound=max(proof.bound, most_on_lines(asked)))
-        )
+        if proof.bound is not None:
+            proof = proof._replace(bound=max(proof.bound, most_on_lines(asked)))
+        return proof
 
     def _search(self, seed: int, most: int) -> None:
         bounds = [(axis.low, axis.high) for axis in self.asked.over]
 
         def evaluate(point: Point) -> Fraction | None:
             if self.over_time:
-                raise Enough
+                raise LimitReached("the time is over")
             self.report("designs", len(self.points), most)
             found = self.look(within(bounds, point))
             return None if found is None else found.value.low
 
-        with suppress(Enough):  # the time is over: what was found is there
+        with suppress(LimitReached):  # the time is over: what was found is there
             best_of(evaluate, len(bounds), seed, most)
         self._simpler()
 
@@ -185,10 +172,8 @@ class _DesignSearch:
             point = []
             for axis, at in zip(self.asked.over, self.best[0], strict=True):
                 reach = axis.width * share
-                low, high = (from_fraction(end) for end in (at - reach, at + reach))
-                point.append(
-                    min(max(to_fraction(simplest_between(low, high)), axis.low), axis.high)
-                )
+                simple = simplest_fraction(at - reach, at + reach)
+                point.append(min(max(simple, axis.low), axis.high))
             self.look(tuple(point))
 
     def _confirm(self) -> None:
@@ -225,9 +210,9 @@ class _DesignSearch:
                 self.best = (point, found)
         return self.points[point]
 
-    def _improved(self, values: Mapping[str, Fraction]) -> Fraction:
-        if values:
-            self.look(tuple(values[axis.name] for axis in self.asked.over))
+    def _improved(self, point: Point | None) -> Fraction:
+        if point is not None:
+            self.look(point)
         return Fraction(0) if self.best is None else self.best[1].value.low
 
     def _go_on(self, boxes: int, bound: float, best: float) -> bool:

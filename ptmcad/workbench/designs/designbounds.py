@@ -10,17 +10,39 @@ length of what may have the wanted count on any line of the strip, and so what i
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from fractions import Fraction
 from heapq import heappop, heappush
+from math import prod
 from typing import Any, NamedTuple
 
 from flint import fmpq
 
 from ptmcad.algebra.real_roots import Interval
-from ptmcad.workbench.designs.designlines import Run, Space, certain, longest, measure, refined
+from ptmcad.answer.design import BoundedBox
+from ptmcad.ask.members import in_space
+from ptmcad.errors import (
+    DegenerateSliceError,
+    ExpressionError,
+    HypothesisError,
+    InfiniteSolutionsError,
+)
+from ptmcad.exact.stages import problem_of
+from ptmcad.question.config.designed import Aim, Design
+from ptmcad.text.flint_numbers import from_fraction, interval_of, to_fraction
+from ptmcad.workbench.designs.designlines import (
+    Run,
+    Space,
+    certain,
+    longest,
+    measure,
+    refined,
+    space_of_family,
+    space_of_slice,
+)
+from ptmcad.workbench.designs.proof import Proof
 
 Place = tuple[Interval, ...]
 """A box of one or two design parameters."""
-Point = tuple[fmpq, ...]
 
 
 Bounded = tuple[fmpq, fmpq, Any]
@@ -28,52 +50,69 @@ Bounded = tuple[fmpq, fmpq, Any]
 box inside of it starts from."""
 
 
-def search(
+def bounded(
+    design: Design,
     bounder: Bounder,
-    whole: Place,
-    feasible: Callable[[Place], bool],
-    improved: Callable[[Point | None], fmpq],
-    enough: Callable[[fmpq], fmpq],
-    go_on: Callable[[int, fmpq, fmpq], bool],
-) -> tuple[Sequence[tuple[Place, fmpq]], bool]:
-    """Cut boxes, always the one with the largest bound, until the largest bound is near enough to
-    the best value.
-
-    Returns a partition of the bounds, each box with its bound, but for boxes on which the
-    conditions fail; and whether all bounds are near enough.
+    look: Callable[[tuple[Fraction, ...] | None], Fraction],
+    tolerance: Fraction,
+    most: int,
+    go_on: Callable[[int, float, float], bool],
+) -> Proof:
+    """A bound by branch and bound: boxes are cut, always the one with the largest bound, until that
+    is near enough to the best value.
 
     Parameters
     ----------
-    whole : the bounds.
-    feasible : whether some design of a box may satisfy the conditions.
-    improved : gives a lower bound of the best value that is known, after a look at a design if one
-        is given.
-    enough : by the best value, the bound that is near enough to it.
+    look : from a design, if one is given, to a lower bound of the best value that is known after it
+        was evaluated.
+    most : boxes.
     go_on : called with the number of boxes, the bound and the best value.
     """
-    best = improved(None)
-    bound, _, state = bounder.over(whole, bounder.whole(), fmpq(1), enough(best))
-    heap = [(-bound, 0, whole, state)]
+    whole = tuple(interval_of(axis) for axis in design.over)
+    size = prod((axis.width for axis in design.axes), start=Fraction(1))  # of the window
+    share, least = from_fraction(tolerance), from_fraction(tolerance * size)
+    best = from_fraction(look(None))
+
+    def enough() -> fmpq:
+        return best * (1 + share) if best > 0 else max(best * (1 + share), least)
+
     settled: list[tuple[Place, fmpq]] = []
     boxes = 1
-    while heap and -heap[0][0] > enough(best) and go_on(boxes, -heap[0][0], best):
-        negative, _, place, state = heappop(heap)
-        for half in _cut(place, whole):
-            if not feasible(half):
-                continue
-            boxes += 1
-            above, certainly, within = bounder.over(
-                half, state, max(_shares(half, whole)), enough(best)
-            )
-            bound = min(above, -negative)
-            if bound > enough(best) and bound + certainly > 2 * best:
-                best = improved(tuple((low + high) / 2 for low, high in half))
-            if bound > enough(best):
-                heappush(heap, (-bound, boxes, half, within))
-            else:
-                settled.append((half, bound))
+    try:
+        bound, _, state = bounder.over(whole, bounder.whole(), fmpq(1), enough())
+        heap = [(-bound, 0, whole, state)]
+        while heap and -heap[0][0] > enough() and boxes < most:
+            if not go_on(boxes, *(float(to_fraction(x)) for x in (-heap[0][0], best))):
+                break
+            negative, _, place, state = heappop(heap)
+            for half in _cut(place, whole):
+                ranges = zip(design.over, _fractions(half), strict=True)
+                if not design.may_hold({axis.name: ends for axis, ends in ranges}):
+                    continue
+                boxes += 1
+                largest = max(_shares(half, whole))
+                above, certainly, within = bounder.over(half, state, largest, enough())
+                bound = min(above, -negative)
+                if bound > enough() and bound + certainly > 2 * best:
+                    middle = tuple(to_fraction((low + high) / 2) for low, high in half)
+                    best = from_fraction(look(middle))
+                if bound > enough():
+                    heappush(heap, (-bound, boxes, half, within))
+                else:
+                    settled.append((half, bound))
+    except HypothesisError as error:
+        return Proof(None, f"a bound fails: {error}")
     settled += [(place, -negative) for negative, _, place, _ in heap]
-    return settled, all(bound <= enough(best) for _, bound in settled)
+    found = tuple(BoundedBox(_fractions(place), to_fraction(bound)) for place, bound in settled)
+    number = f"{len(found)} boxes of designs" if len(found) != 1 else "one box of designs"
+    complete = all(bound <= enough() for _, bound in settled)
+    how = f"over {number}" if complete else f"which was stopped at {number}"
+    highest = max((box.bound for box in found), default=Fraction(0))
+    return Proof(highest, f"by branch and bound, {how}", found)
+
+
+def _fractions(place: Place) -> tuple[tuple[Fraction, Fraction], ...]:
+    return tuple((to_fraction(low), to_fraction(high)) for low, high in place)
 
 
 def _shares(place: Place, whole: Place) -> list[fmpq]:
@@ -125,7 +164,7 @@ _FINENESS = 16
 _ANY = (fmpq(0), fmpq(1))
 
 
-class AreaStrip(NamedTuple):
+class _AreaStrip(NamedTuple):
     """A part of the window between two values of the axis that is not the line's, with its runs.
 
     Attributes
@@ -139,7 +178,7 @@ class AreaStrip(NamedTuple):
     least: fmpq
 
 
-class AreaBounder(NamedTuple):
+class _AreaBounder(NamedTuple):
     """The area where the count is the wanted one.
 
     Attributes
@@ -152,18 +191,20 @@ class AreaBounder(NamedTuple):
     space: Space
     base: Interval
 
-    def whole(self) -> tuple[AreaStrip, ...]:
+    def whole(self) -> tuple[_AreaStrip, ...]:
         size = self.space.window[1] - self.space.window[0]
         return (
-            AreaStrip(self.base, self.space.whole(), size * (self.base[1] - self.base[0]), fmpq(0)),
+            _AreaStrip(
+                self.base, self.space.whole(), size * (self.base[1] - self.base[0]), fmpq(0)
+            ),
         )
 
-    def over(self, place: Place, state: Sequence[AreaStrip], share: fmpq, enough: fmpq) -> Bounded:
+    def over(self, place: Place, state: Sequence[_AreaStrip], share: fmpq, enough: fmpq) -> Bounded:
         """Strips are cut until they are about as narrow as the designs' interval, in shares of
         their ranges.
         """
         narrowest = (self.base[1] - self.base[0]) * share / _STRIP_FINENESS
-        done: list[AreaStrip] = []
+        done: list[_AreaStrip] = []
         waiting = [self._strip(strip.base, strip.runs, place[0], share) for strip in state]
         while waiting:
             strips = [*done, *waiting]
@@ -171,7 +212,7 @@ class AreaBounder(NamedTuple):
             doubt = bound - sum((s.least for s in strips), fmpq(0))
             if bound <= enough:
                 break
-            cut: list[AreaStrip] = []
+            cut: list[_AreaStrip] = []
             for strip in waiting:
                 low, high = strip.base
                 if high - low <= narrowest or (strip.most - strip.least) * 2 * len(strips) < doubt:
@@ -189,7 +230,7 @@ class AreaBounder(NamedTuple):
 
     def _strip(
         self, base: Interval, runs: Sequence[Run], designs: Interval, share: fmpq
-    ) -> AreaStrip:
+    ) -> _AreaStrip:
         space, width = self.space, base[1] - base[0]
         size = space.window[1] - space.window[0]
         fine = (
@@ -201,11 +242,50 @@ class AreaBounder(NamedTuple):
         least = sum(
             (space.least(p.low, p.high) for run in found for p in run.parts if p.here), fmpq(0)
         )
-        return AreaStrip(base, found, width * measure(space, found), width * least)
+        return _AreaStrip(base, found, width * measure(space, found), width * least)
 
 
 _STRIP_FINENESS = 4
 
 
-Bounder = Lengths | AreaBounder
+Bounder = Lengths | _AreaBounder
 """An objective that can be bounded over boxes."""
+
+
+def bounder_of(design: Design, tolerance: Fraction) -> Bounder | str:
+    """What bounds the objective over boxes of designs, or why there is nothing that does."""
+    count = len(design.over)
+    if design.aim not in (Aim.RANGE, Aim.AREA):
+        return f"no bound is offered of {design.maximise}: nothing is proved of what is better elsewhere"
+    most = 2 if design.aim is Aim.RANGE else 1
+    if count > most:
+        return (
+            f"with {count} design parameters no bound is offered (for {design.aim.value} with {most} at most): nothing "
+            "is proved of what is better elsewhere"
+        )
+    try:
+        found = _bounder(design, from_fraction(tolerance))
+    except (ExpressionError, DegenerateSliceError, InfiniteSolutionsError) as error:
+        return f"there is no discriminant variety of all designs at once: {error}"
+    return (
+        found
+        or "there is no discriminant variety of all designs at once: solutions have to be left out"
+    )
+
+
+def _bounder(design: Design, tolerance: fmpq) -> Bounder | None:
+    family = design.family
+    if family is None:  # a range over one parameter: a slice
+        slice = design.slice({})
+        space = space_of_slice(
+            problem_of(slice), slice.axis_names.index(design.along), design.working
+        )
+        return Lengths(space, tolerance)
+    axes = (*family.axes, family.free)
+    ranges = tuple(interval_of(axis) for axis in axes)
+    along = 1 if design.aim is Aim.AREA else 0
+    names = tuple(a.name for a in axes)
+    found = space_of_family(in_space(family), names, ranges, along, design.working)
+    if found is None:
+        return None
+    return _AreaBounder(found, ranges[0]) if design.aim is Aim.AREA else Lengths(found, tolerance)

@@ -74,7 +74,7 @@ class Space(NamedTuple):
     def whole(self) -> tuple[Run, ...]:
         """The line as one run of which nothing is known."""
         low, high = (value**self.power for value in self.window)
-        return (Run((LinePart(low, high, None, None),), None, None),)
+        return (Run((_LinePart(low, high, None, None),), None, None),)
 
     def length(self, low: fmpq, high: fmpq) -> fmpq:
         """An upper bound for the length of a part, given by the powers of its ends; exact where the
@@ -97,7 +97,7 @@ class Space(NamedTuple):
         return root_bound(low, self.power, up=True), root_bound(high, self.power, up=False)
 
 
-class LinePart(NamedTuple):
+class _LinePart(NamedTuple):
     """A part of the line, by the powers of its ends.
 
     Attributes
@@ -121,7 +121,7 @@ class Run(NamedTuple):
     left, right : the signs of the polynomials beyond its ends; None at the window's edge.
     """
 
-    parts: tuple[LinePart, ...]
+    parts: tuple[_LinePart, ...]
     left: Signs | None
     right: Signs | None
 
@@ -162,10 +162,14 @@ def certain(space: Space, runs: Sequence[Run]) -> fmpq:
 
 
 def _refined(space: Space, box: Box, run: Run, resolution: fmpq) -> Iterator[Run]:
-    parts: list[LinePart] = []
+    parts: list[_LinePart] = []
     for part in run.parts:
         if part.here is None and (part.signs is None or len(part.signs) < len(space.tables)):
-            parts += _cut(space, box, part, resolution)
+            ends = part.low, part.high
+            tables = {
+                number: over(table, (ends, *box)) for number, table in enumerate(space.tables)
+            }
+            parts += _pieces(space, tables, {}, ends, resolution)
         else:
             parts.append(part)
     parts = _joined(parts)
@@ -177,7 +181,7 @@ def _refined(space: Space, box: Box, run: Run, resolution: fmpq) -> Iterator[Run
         _counted(space, box, part) if part.signs is not None and part.here is None else part
         for part in parts
     ]
-    left, kept = run.left, list[LinePart]()
+    left, kept = run.left, list[_LinePart]()
     for part in parts:
         if part.here is not False:
             kept.append(part)
@@ -189,50 +193,42 @@ def _refined(space: Space, box: Box, run: Run, resolution: fmpq) -> Iterator[Run
         yield Run(tuple(kept), left, run.right)
 
 
-def _cut(space: Space, box: Box, part: LinePart, resolution: fmpq) -> Iterator[LinePart]:
-    """The part in pieces that are free of the variety, or too short to be cut."""
-    place = ((part.low, part.high), *box)
-    tables = {number: over(table, place) for number, table in enumerate(space.tables)}
-    yield from _pieces(space, tables, {}, (part.low, part.high), resolution)
-
-
 def _pieces(
     space: Space, tables: dict[int, Table], known: dict[int, int], place: Interval, resolution: fmpq
-) -> Iterator[LinePart]:
-    """The same, of polynomials that are not ``known`` to have a sign there."""
+) -> Iterator[_LinePart]:
+    """A part in pieces that are free of the variety, or too short to be cut; of polynomials that
+    are not ``known`` to have a sign there.
+    """
     signs = {number: sign(table) for number, table in tables.items()}
     known = known | {number: found for number, found in signs.items() if found}
     tables = {number: table for number, table in tables.items() if number not in known}
     low, high = place
     if not tables:
-        yield LinePart(low, high, tuple(known[number] for number in range(len(known))), None)
+        yield _LinePart(low, high, tuple(known[number] for number in range(len(known))), None)
         return
     if space.length(low, high) <= resolution:
-        yield LinePart(low, high, None, None)
+        yield _LinePart(low, high, None, None)
         return
     middle = (low + high) / 2
     cut = {number: halves(table) for number, table in tables.items()}
-    yield from _pieces(
-        space, {n: pair[0] for n, pair in cut.items()}, known, (low, middle), resolution
-    )
-    yield from _pieces(
-        space, {n: pair[1] for n, pair in cut.items()}, known, (middle, high), resolution
-    )
+    for side, half in enumerate(((low, middle), (middle, high))):
+        part = {number: pair[side] for number, pair in cut.items()}
+        yield from _pieces(space, part, known, half, resolution)
 
 
-def _joined(parts: Sequence[LinePart]) -> list[LinePart]:
+def _joined(parts: Sequence[_LinePart]) -> list[_LinePart]:
     """Neighbours of equal signs as one."""
-    found: list[LinePart] = []
+    found: list[_LinePart] = []
     for part in parts:
         if found and found[-1].signs == part.signs:
             here = part.here if found[-1].here is None else found[-1].here
-            found[-1] = LinePart(found[-1].low, part.high, part.signs, here)
+            found[-1] = _LinePart(found[-1].low, part.high, part.signs, here)
         else:
             found.append(part)
     return found
 
 
-def _counted(space: Space, box: Box, part: LinePart) -> LinePart:
+def _counted(space: Space, box: Box, part: _LinePart) -> _LinePart:
     """The part with what a sample says of its count."""
     low, high = space.inside(part.low, part.high)
     if low >= high:
@@ -304,8 +300,7 @@ def _space(
     window = ranges[along]
     order = (along, *(k for k in range(len(names)) if k != along))
     ordered = [
-        [(_padded([int(powers[k]) for k in order]), int(c)) for powers, c in p.terms()]
-        for p in found
+        [([int(powers[k]) for k in order] + [0], int(c)) for powers, c in p.terms()] for p in found
     ]
     power = (
         max(1, gcd(*(powers[0] for terms in ordered for powers, _ in terms)))
@@ -323,16 +318,11 @@ def _space(
         except DegenerateSliceError:
             return None
 
-    return Space(tuple(_table(terms, power) for terms in ordered), power, window, count, working)
-
-
-def _padded(powers: Sequence[int]) -> tuple[int, int, int]:
-    first, second, third = (*powers, 0)[:3]
-    return first, second, third
-
-
-def _table(terms: Sequence[tuple[tuple[int, int, int], int]], power: int) -> Table:
-    return table_of(((i // power, j, k), c) for (i, j, k), c in terms)
+    tables = (
+        table_of(((first // power, *others[:2]), c) for (first, *others), c in terms)
+        for terms in ordered
+    )
+    return Space(tuple(tables), power, window, count, working)
 
 
 _WIDTH = fmpq(1, 2**80)

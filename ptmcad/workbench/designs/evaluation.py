@@ -10,11 +10,12 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from fractions import Fraction
+from functools import partial
 from typing import NamedTuple
 
-from ptmcad.answer.intervals import Span
+from ptmcad.answer.intervals import Span, lower, upper
 from ptmcad.answer.poses import Poses
-from ptmcad.answer.regionmap import RegionMap, Status
+from ptmcad.answer.regionmap import Status
 from ptmcad.ask.classification import region_map
 from ptmcad.ask.members import Common, member_map
 from ptmcad.ask.quantities import Quantity, named, of_pose, unknown
@@ -64,11 +65,12 @@ def evaluator(design: Design, common: Common | None = None, space: Space | None 
     ConfigError
         When a quantity or an expression has no meaning for the model.
     """
+    found: Evaluate
     match design.aim:
         case Aim.RANGE:
-            found = _range_of(design) if space is None else _range_in(design, space)
+            found = partial(_range, design) if space is None else partial(_range_in, design, space)
         case Aim.AREA:
-            found = _area_of(design, common)
+            found = partial(_area, design, common)
         case Aim.BARRIER:
             found = _barrier_of(design)
         case Aim.EXPRESSION:
@@ -88,71 +90,49 @@ def evaluator(design: Design, common: Common | None = None, space: Space | None 
     return evaluate
 
 
-def _range_of(design: Design) -> Evaluate:
+def _range(design: Design, values: Numbers) -> Value | None:
     from ptmcad.exact.ranges.anyline import ranges_on
     from ptmcad.exact.ranges.exactline import intervals
 
     first = design.over[0].name
-
-    def evaluate(values: Numbers) -> Value | None:
-        slice = design.slice(values)
-        found: Sequence[Span]
-        try:
-            found = intervals(slice, design.along, {first: values[first]}, design.working).operation
-        except (DegenerateSliceError, InfiniteSolutionsError):
-            found, possible = ranges_on(slice, design.along, values[first], design.working)
-            if found != possible:
-                return None
-        if not found:
-            return Value(Enclosure(Fraction(0), Fraction(0)))
-        widest = max(found, key=lambda span: span.width.low)
-        ends = tuple(
-            Enclosure(end, end) if isinstance(end, Fraction) else Enclosure(end.low, end.high)
-            for end in (widest.low, widest.high)
-        )
-        return Value(widest.width, (ends[0], ends[1]))
-
-    return evaluate
+    slice = design.slice(values)
+    found: Sequence[Span]
+    try:
+        found = intervals(slice, design.along, {first: values[first]}, design.working).operation
+    except (DegenerateSliceError, InfiniteSolutionsError):
+        found, possible = ranges_on(slice, design.along, values[first], design.working)
+        if found != possible:
+            return None
+    if not found:
+        return Value(Enclosure(Fraction(0), Fraction(0)))
+    widest = max(found, key=lambda span: span.width.low)
+    left, right = (Enclosure(lower(end), upper(end)) for end in (widest.low, widest.high))
+    return Value(widest.width, (left, right))
 
 
-def _range_in(design: Design, space: Space) -> Evaluate:
+def _range_in(design: Design, space: Space, values: Numbers) -> Value | None:
     from ptmcad.workbench.designs.designlines import longest_on_line
 
-    names = [axis.name for axis in design.over]
-
-    def evaluate(values: Numbers) -> Value | None:
-        found = longest_on_line(space, tuple(from_fraction(values[name]) for name in names))
-        if found is None:
-            return None
-        low, high = (Enclosure(to_fraction(a), to_fraction(b)) for a, b in found)
-        return Value(
-            Enclosure(max(high.low - low.high, Fraction(0)), high.high - low.low), (low, high)
-        )
-
-    return evaluate
+    at = tuple(from_fraction(values[axis.name]) for axis in design.over)
+    if (found := longest_on_line(space, at)) is None:
+        return None
+    low, high = (Enclosure(to_fraction(a), to_fraction(b)) for a, b in found)
+    width = Enclosure(max(high.low - low.high, Fraction(0)), high.high - low.low)
+    return Value(width, (low, high))
 
 
-def _area_of(design: Design, common: Common | None) -> Evaluate:
+def _area(design: Design, common: Common | None, values: Numbers) -> Value:
     options = Options(engine="exact", area_tolerance=AREA_TOLERANCE)
-
-    def evaluate(values: Numbers) -> Value | None:
-        found: RegionMap
-        if common is not None:
-            found = member_map(common, values[common.family.free.name], options)
-        else:
-            found = region_map(design.slice(values), options)
-        wanted = [
-            r.area
-            for r in found.regions
-            if (r.total if r.stable is None else r.stable) == design.working
-        ]
-        return Value(
-            Enclosure(
-                sum((a for a, _ in wanted), Fraction(0)), sum((b for _, b in wanted), Fraction(0))
-            )
-        )
-
-    return evaluate
+    found = (
+        region_map(design.slice(values), options)
+        if common is None
+        else member_map(common, values[common.family.free.name], options)
+    )
+    low = high = Fraction(0)
+    for region in found.regions:
+        if (region.total if region.stable is None else region.stable) == design.working:
+            low, high = low + region.area[0], high + region.area[1]
+    return Value(Enclosure(low, high))
 
 
 def _poses(design: Design, values: Numbers) -> Poses | None:
@@ -167,15 +147,17 @@ def _poses(design: Design, values: Numbers) -> Poses | None:
     return poses if number == design.working else None
 
 
-def chosen(design: Design, poses: Poses) -> int | None:
-    """The number of the pose that is meant, in the order of `Poses`; None where there is no such
-    one.
+def _chosen(design: Design, values: Numbers) -> tuple[Poses, int] | None:
+    """The poses of such a design, and the number of the one that is meant, in their order; None
+    where there is no such one.
     """
     from ptmcad.workbench.fields.quantityfield import choice_of
 
+    if (poses := _poses(design, values)) is None:
+        return None
     choice = choice_of(design.pose, design.model)
     numbers = choice.numbers(poses)
-    return numbers[choice.rank - 1] if choice.rank <= len(numbers) else None
+    return (poses, numbers[choice.rank - 1]) if choice.rank <= len(numbers) else None
 
 
 def _barrier_of(design: Design) -> Evaluate:
@@ -191,10 +173,9 @@ def _barrier_of(design: Design) -> Evaluate:
 
         from ptmcad.workbench.fields.barrier import barriers
 
-        poses = _poses(design, values)
-        number = None if poses is None else chosen(design, poses)
-        if poses is None or number is None:
+        if (chosen := _chosen(design, values)) is None:
             return None
+        poses, number = chosen
         given = {name: float(value) for name, value in poses.parameters.items()}
         at = np.array([unknowns_of(pose) for pose in poses.equilibria]).T[:, None]
         found = barriers(
@@ -219,19 +200,17 @@ def _expression_of(design: Design) -> Evaluate:
     if quantity is not None and quantity.name in model.angles:
         quantity = None  # by itself an angle is in radians, as in any expression
     if quantity is not None:
-        return _quantity_of(design, quantity)
+        return partial(_quantity, design, quantity)
     tree = _tree(design)
     needs_pose = bool(model.unknowns.keys() & set(names_of(tree)))
 
     def evaluate(values: Numbers) -> Value | None:
-        poses = _poses(design, values)
+        found = _chosen(design, values) if needs_pose else (_poses(design, values), 0)
+        poses, number = found or (None, 0)
         if poses is None:
             return None
         known = {name: Enclosure(v, v) for name, v in {**poses.parameters, **values}.items()}
         if needs_pose:
-            number = chosen(design, poses)
-            if number is None:
-                return None
             pose = poses.equilibria[number]
             known |= dict(zip(model.sorted_unknowns, (*pose.angles, *pose.reals), strict=True))
         enclosed = _enclosed(tree, known)
@@ -240,16 +219,12 @@ def _expression_of(design: Design) -> Evaluate:
     return evaluate
 
 
-def _quantity_of(design: Design, quantity: Quantity) -> Evaluate:
-    def evaluate(values: Numbers) -> Value | None:
-        poses = _poses(design, values)
-        number = None if poses is None else chosen(design, poses)
-        found = (
-            None if poses is None or number is None else of_pose(quantity, poses.equilibria[number])
-        )
-        return None if found is None else Value(found)
-
-    return evaluate
+def _quantity(design: Design, quantity: Quantity, values: Numbers) -> Value | None:
+    if (chosen := _chosen(design, values)) is None:
+        return None
+    poses, number = chosen
+    found = of_pose(quantity, poses.equilibria[number])
+    return None if found is None else Value(found)
 
 
 def _tree(design: Design) -> Tree:

@@ -14,6 +14,8 @@ from fractions import Fraction
 from itertools import combinations, product
 from typing import Any
 
+from ptmcad.errors import LimitReached
+
 Point = tuple[Fraction, ...]
 Evaluate = Callable[[Point], Fraction | None]
 GRID = 2**12
@@ -25,17 +27,13 @@ _CLIMBING = Fraction(1, 2)
 """Share of the evaluations for the climb."""
 
 
-class Enough(Exception):
-    """The evaluations, or the time, are used up."""
-
-
 def best_of(evaluate: Evaluate, number: int, seed: int, evaluations: int) -> None:
     """Look for the best point of the unit cube.
 
     Parameters
     ----------
     evaluate : of points of the cube; None for one without a value. It keeps what it found, and may
-        raise `Enough`.
+        raise `LimitReached`.
     number : of parameters.
     evaluations : at most so many points, for the global search and for the climb.
     """
@@ -46,7 +44,7 @@ def best_of(evaluate: Evaluate, number: int, seed: int, evaluations: int) -> Non
     def look(point: Point) -> Fraction | None:
         if point not in seen:
             if left[0] <= 0:
-                raise Enough
+                raise LimitReached("the evaluations are used up")
             left[0] -= 1
             value = seen[point] = evaluate(point)
             if value is not None and (not best or value > best[0][0]):
@@ -55,14 +53,14 @@ def best_of(evaluate: Evaluate, number: int, seed: int, evaluations: int) -> Non
 
     try:
         _evolve(look, number, seed, evaluations)
-    except Enough:
+    except LimitReached:
         if left[0] > 0:
             raise  # the caller's
     left[0] = evaluations - len(seen)
     if best:
         try:
             _climb(look, best[0])
-        except Enough:
+        except LimitReached:
             if left[0] > 0:
                 raise
 
@@ -104,7 +102,9 @@ def _climb(look: Evaluate, start: tuple[Fraction, Point]) -> None:
     step = Fraction(1, 64)
     while step * FINEST >= 1:
         for number, way in enumerate(ways):
-            other = _moved(point, way, step)
+            # a step, at most to the bounds
+            moved = (at + sign * step for at, sign in zip(point, way, strict=True))
+            other = tuple(min(max(at, Fraction(0)), Fraction(1)) for at in moved)
             found = None if other == point else look(other)
             if found is not None and found > value:
                 value, point = found, other
@@ -124,14 +124,6 @@ def _ways(number: int) -> list[tuple[int, ...]]:
         for a, b in product((1, -1), repeat=2)
     ]
     return [tuple(way.get(k, 0) for k in range(number)) for way in (*single, *double)]
-
-
-def _moved(point: Point, way: tuple[int, ...], step: Fraction) -> Point:
-    """The point after a step, at most to the bounds."""
-    return tuple(
-        min(max(at + sign * step, Fraction(0)), Fraction(1))
-        for at, sign in zip(point, way, strict=True)
-    )
 
 
 def within(bounds: Sequence[tuple[Fraction, Fraction]], point: Point) -> Point:

@@ -37,7 +37,6 @@ from ptmcad.show.posetable import kind_of
 from ptmcad.show.render.axes import symbol
 from ptmcad.show.render.colours import fill_of
 from ptmcad.show.render.outline import TOLERANCE, outline, shapes
-from ptmcad.show.render.view import Shapes
 from ptmcad.show.report.mapsvg import (
     SIDE,
     counts_text,
@@ -76,10 +75,6 @@ REMEMBERED = 4
 """Families whose variety is kept: one is left and come back to when another parameter is dragged to
 and fro.
 """
-
-
-class _Enough(Exception):
-    """The map that was handed over is good enough for now."""
 
 
 Job = Mapping[str, Any]
@@ -179,17 +174,14 @@ class Tasks:
         started, seconds = perf_counter(), FINE_SECONDS if fine else 0
 
         def handed(found: RegionMap) -> None:
-            self.last = found
             if perf_counter() - started >= seconds:
-                raise _Enough
+                raise LimitReached("the map is good enough for now", found)
 
         try:
             options = Options(
                 timeout=CERTIFIED_SECONDS, progress=self._progress, partial=handed, resume=resume
             )
             self.last = region_map(slice, options)
-        except _Enough:
-            pass
         except LimitReached as stop:
             if not isinstance(stop.partial, RegionMap):
                 raise
@@ -207,22 +199,18 @@ class Tasks:
         if set(job["at"]) != set(axes):
             raise ConfigError(f"a point has {' and '.join(axes)}")
         at = {
-            name: number_within(name, job["at"][name], axes[name].low, axes[name].high)
-            for name in axes
+            name: number_within(name, job["at"][name], axis.low, axis.high)
+            for name, axis in axes.items()
         }
-        place: tuple[Fraction, Fraction] = (at[slice.axes[0].name], at[slice.axes[1].name])
-        parameters = values_at(slice.parameters, *place)
+        parameters = values_at(slice.parameters, *at.values())
         for name, value in parameters.items():
-            kind = slice.model.kind(name)
-            if kind.excludes(value):
+            if slice.model.kind(name).excludes(value):
                 raise ConfigError(f"{name} is {value} there, where the geometry ends")
         return _point_view(poses_at(slice.model, parameters, POSE_DIGITS), at)
 
     def _record(self, values: Numbers, _job: Job) -> dict[str, Any]:
         slice = self.panel.slice(values)
-        record, command = reproduction(slice)
-        if record is None:
-            raise ConfigError("no problem record gives this slice")
+        record, command = _reproduction(slice)
         return {"name": slice.name, "record": record, "command": f"ptmcad classify {slice.name}.yaml",
                 "alone": command or ""}  # fmt: skip
 
@@ -232,9 +220,7 @@ class Tasks:
         """
         name = file_name(job["name"], "the name")
         slice = replace(self.panel.slice(values), name=name)
-        record = reproduction(slice)[0]
-        if record is None:
-            raise ConfigError("no problem record gives this slice")
+        record, _ = _reproduction(slice)
         names = [
             f"{name}.yaml",
             *(f"{name}.{kind}" for kind in PICTURES if kind in job["formats"]),
@@ -245,23 +231,30 @@ class Tasks:
                 raise ConfigError(f"{file} is there already: choose another name")
         check_writable(self.folder, tuple(names))
         if is_certified(slice, "auto"):
-            result = replace(self._certified(self.panel.slice(values), fine=True), slice=slice)
+            found = self._certified(self.panel.slice(values), fine=True)
         else:
-            result = replace(self._exact(slice, values, areas=True, sparing=False), slice=slice)
+            found = self._exact(slice, values, areas=True, sparing=False)
+        result = replace(found, slice=slice)
         written = write_files(self.folder, _writers(result, record, names), new=True)
         return {"files": [path.name for path in written]}
 
 
+def _reproduction(slice: Slice) -> tuple[str, str | None]:
+    """The record that gives a slice, and a command that needs none."""
+    record, command = reproduction(slice)
+    if record is None:
+        raise ConfigError("no problem record gives this slice")
+    return record, command
+
+
 def _writers(result: RegionMap, record: str, names: list[str]) -> dict[str, Writer]:
     """For each file what writes it; the JSON, which vouches for the others, comes last."""
-    found: dict[str, Writer] = {}
-    for file in names:
-        kind = file.rpartition(".")[2]
-        if kind in PICTURES:
-            found[file] = partial(_draw, result)
-        else:
-            found[file] = text_writer(record if kind == "yaml" else result.to_json())
-    return found
+    texts = {"yaml": lambda: record, "json": result.to_json}
+    kinds = {file: file.rpartition(".")[2] for file in names}
+    return {
+        file: text_writer(texts[kind]()) if kind in texts else partial(_draw, result)
+        for file, kind in kinds.items()
+    }
 
 
 def _draw(result: RegionMap, path: Path) -> None:
@@ -278,15 +271,15 @@ def _map_view(result: RegionMap, *, fine: bool, framed: bool) -> dict[str, Any]:
     fine : whether curves are as smooth as in other pictures, and areas are known.
     framed : whether the axes with their ticks are wanted.
     """
-    seen: Shapes = (
+    seen = (
         shapes(result)
         if result.cover is not None
         else outline(result, None, TOLERANCE if fine else COARSE)
     )
-    slice = result.slice
+    slice, certified = result.slice, result.cover is not None
+    known, around = fine or certified, room(seen, detail=False) if framed else None
     fills = [fill_of(region, slice.count) for region in result.regions]
-    simpler = fine or result.cover is not None
-    drawn, lines = dict(region_outlines(seen, simpler)), wall_lines(seen, simpler)
+    drawn, lines = dict(region_outlines(seen, known)), wall_lines(seen, known)
     return {
         "regions": [
             {
@@ -294,9 +287,7 @@ def _map_view(result: RegionMap, *, fine: bool, framed: bool) -> dict[str, Any]:
                 "face": fills[number].face,
                 "hatch": hatch_id(fills[number].hatch) if fills[number].hatch else "",
                 "words": counts_text(region, slice.model),
-                "area": area_digits(result, region.area)
-                if fine or result.cover is not None
-                else "",
+                "area": area_digits(result, region.area) if known else "",
             }
             for number, region in enumerate(result.regions)
         ],
@@ -311,26 +302,15 @@ def _map_view(result: RegionMap, *, fine: bool, framed: bool) -> dict[str, Any]:
             for number, x, y in region_labels(seen)
         ],
         "patterns": pattern_defs(fills),
-        "frame": _frame(seen) if framed else None,
-        "certified": result.cover is not None,
-        "undetermined": approximate_text(100 * result.undetermined)
-        if result.cover is not None
-        else "",
+        "frame": around
+        and {"svg": "".join(frame(seen, around)), "view": around.view, "place": around.place},
+        "certified": certified,
+        "undetermined": approximate_text(100 * result.undetermined) if certified else "",
         "settled": result.status is not Status.PARTIAL,
         "cells": len(result.cells),
-        "digest": _digest(result),
+        # enough for a test to recognise the map
+        "digest": [[r.stable, r.total, len(r.cells)] for r in result.regions],
     }
-
-
-def _frame(seen: Shapes) -> dict[str, Any]:
-    """The axes, and how much room they need around the window."""
-    around = room(seen, detail=False)
-    return {"svg": "".join(frame(seen, around)), "view": around.view, "place": around.place}
-
-
-def _digest(result: RegionMap) -> list[list[Any]]:
-    """Counts and numbers of cells of every region: enough for a test to recognise the map."""
-    return [[region.stable, region.total, len(region.cells)] for region in result.regions]
 
 
 def _point_view(poses: Poses, at: Numbers) -> dict[str, Any]:

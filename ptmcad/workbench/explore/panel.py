@@ -21,7 +21,7 @@ from ptmcad.question.config.scalars import number_of
 from ptmcad.question.config.typed import ranges_of
 from ptmcad.question.slice import Slice
 from ptmcad.text.entry import Scalar
-from ptmcad.text.numerals import Numbers, text_of
+from ptmcad.text.numerals import Numbers, magnitude, text_of
 from ptmcad.text.parsing import rational
 from ptmcad.text.syntax import names_in
 
@@ -33,7 +33,7 @@ MAX_NAME = 100
 
 
 @dataclass(frozen=True, slots=True)
-class Slider:
+class _Slider:
     """A parameter that one drags.
 
     Attributes
@@ -56,7 +56,7 @@ class SliderPanel:
     """A record with its sliders; the free parameter, if there is one, comes first."""
 
     record: Record
-    sliders: tuple[Slider, ...]
+    sliders: tuple[_Slider, ...]
 
     @property
     def model(self) -> Model:
@@ -150,10 +150,10 @@ def panel_of(record: Record, ranges: Iterable[str] = ()) -> SliderPanel:
         low, high = ends.pop(axis.name, (axis.low, axis.high))
         if not axis.low <= low <= first <= high <= axis.high:
             low, high = axis.low, axis.high
-        sliders.append(Slider(axis.name, low, high, _step(low, high), first, free=True))
+        sliders.append(_Slider(axis.name, low, high, _step(low, high), first, free=True))
     for name, value in _numbers(record, member).items():
         low, high = ends.pop(name) if name in ends else _around(record.model, name, value)
-        sliders.append(Slider(name, min(low, value), max(high, value), _step(low, high), value))
+        sliders.append(_Slider(name, min(low, value), max(high, value), _step(low, high), value))
     if ends:
         names = ", ".join(slider.name for slider in sliders) or "none, as no parameter is a number"
         raise ConfigError(
@@ -234,10 +234,6 @@ def _around(model: Model, name: str, value: Fraction) -> tuple[Fraction, Fractio
 
 def _step(low: Fraction, high: Fraction) -> Fraction:
     """The least of 1, 2, 5 times a power of ten that gives at most `POSITIONS` positions."""
-    span = high - low
-    step = Fraction(1)
-    while span / step > POSITIONS:
-        step *= 10
-    while span / (step / 10) <= POSITIONS:
-        step /= 10
-    return next(step / f for f in (5, 2, 1) if span / (step / f) <= POSITIONS)
+    least = (high - low) / POSITIONS
+    unit = Fraction(10) ** magnitude(least)
+    return next(f * unit for f in (1, 2, 5, 10) if f * unit >= least)

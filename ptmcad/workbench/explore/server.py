@@ -61,7 +61,7 @@ _LOG = logging.getLogger("ptmcad.explore")
 Handler = Callable[[web.Request], Awaitable[web.StreamResponse]]
 
 
-class Server:
+class _Server:
     """The page's side and the workers': one for maps and files, another one for points, so that
     these do not wait.
     """
@@ -273,7 +273,7 @@ async def serve(
     """
     own = listening(port)
     guard = Guard(own.getsockname()[1])
-    server = Server(panel, folder, guard)
+    server = _Server(panel, folder, guard)
     _LOG.addFilter(_is_own_fault)
     app = server.application()
     runner = web.AppRunner(

@@ -10,6 +10,8 @@ import math
 from collections.abc import Callable, Mapping
 from contextlib import suppress
 from dataclasses import dataclass
+from fractions import Fraction
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -21,7 +23,7 @@ from ptmcad.errors import ConfigError, ExpressionError
 from ptmcad.question.slice import Slice
 from ptmcad.text.balls import in_balls
 from ptmcad.text.syntax import did_you_mean, parse
-from ptmcad.text.tree import OPERATORS, Call, Name, Number, Power, Step, Tree, interpret, names_of
+from ptmcad.text.tree import Tree, arithmetic, interpret, names_of
 
 OPTION = "--value"
 Values = Callable[[ModelState, Floats, Mapping[str, Any]], Floats]
@@ -58,33 +60,29 @@ def quantity_of(text: str, slice: Slice) -> Valued:
         For a name or an expression that has no meaning here.
     """
     known = named(slice.model, text, OPTION) or unknown(slice.model, text.strip())
-    if (
-        known is None or known.name in slice.model.angles
-    ):  # by itself an angle is in radians, as in any expression
+    # by itself an angle is in radians, as in any expression
+    if known is None or known.name in slice.model.angles:
         return _expression(text, slice)
-    return Valued(
-        known.name, unit_of(known, slice), _values(known), known.kind is QuantityKind.BARRIER
-    )
+    is_barrier = known.kind is QuantityKind.BARRIER
+    return Valued(known.name, unit_of(known, slice), partial(_value, known), is_barrier)
 
 
-def _values(quantity: Quantity) -> Values:
-    number, part = quantity.number, quantity.part
+def _value(quantity: Quantity, state: ModelState, at: Floats, _: object) -> Any:
     match quantity.kind:
         case QuantityKind.ENERGY | QuantityKind.BARRIER:
-            return lambda state, at, values: state.known_energy
+            return state.known_energy
         case QuantityKind.STIFFNESS:
-            return lambda state, at, values: eigenvalues(state.jacobian)[0]
+            return eigenvalues(state.jacobian)[0]
         case QuantityKind.FORCE:
-            return lambda state, at, values: state.stretches[number][2]
+            return state.stretches[quantity.number][2]
         case QuantityKind.LENGTH:
-            return lambda state, at, values: state.stretches[number][0]
+            return state.stretches[quantity.number][0]
         case QuantityKind.ANGLE:
-            return lambda state, at, values: np.degrees(at[number])
+            return np.degrees(at[quantity.number])
         case QuantityKind.REAL:
-            return lambda state, at, values: at[number]
+            return at[quantity.number]
         case QuantityKind.X | QuantityKind.Y:
-            side = int(quantity.kind is QuantityKind.Y)
-            return lambda state, at, values: state.points[part][side]
+            return state.points[quantity.part][quantity.kind is QuantityKind.Y]
 
 
 def _expression(text: str, slice: Slice) -> Valued:
@@ -108,7 +106,7 @@ def _expression(text: str, slice: Slice) -> Valued:
             name: np.float64(math.fmod(math.sqrt(2) * (k + 1), 1)) for k, name in enumerate(known)
         }
         with np.errstate(all="ignore"), suppress(FloatingPointError):
-            interpret(tree, _Arrays(generic))
+            _in_arrays(tree, generic)
         if not in_balls(tree, {name: arb(value) for name, value in generic.items()}).is_finite():
             raise ConfigError(f"{text[:60]!r} divides by zero", key=OPTION)
     except ExpressionError as error:
@@ -134,7 +132,7 @@ def _in_doubles(tree: Tree, given: Mapping[str, Any], shape: tuple[int, ...]) ->
     """An expression's values: nan where it has none, infinite where no double is near it."""
     try:
         with np.errstate(over="raise", under="raise", divide="ignore", invalid="ignore"):
-            found = np.asarray(interpret(tree, _Arrays(given)), dtype=float)
+            found = np.asarray(_in_arrays(tree, given), dtype=float)
             return np.broadcast_to(np.where(np.isfinite(found), found, np.nan), shape) + 0.0
     except FloatingPointError:  # some part of it is beyond doubles at some point
         names = names_of(tree)
@@ -156,32 +154,21 @@ def _double(ball: arb) -> float:
     return float(ball.mid()) if is_near else math.inf
 
 
-class _Arrays:
-    """The interpretation of an expression in arrays; quotients and functions of any argument are
-    allowed.
-    """
+_FUNCTIONS = {"cos": np.cos, "sin": np.sin}
 
-    def __init__(self, values: Mapping[str, Any]):
-        self.values = values
 
-    def number(self, number: Number) -> Any:
-        value = np.float64(number.value)
-        if number.value and abs(value) < _TINY:
-            raise FloatingPointError("the number is nearer to zero than doubles are")
-        return value
+def _in_arrays(tree: Tree, values: Mapping[str, Any]) -> Any:
+    """An expression's value in arrays; quotients and functions of any argument are allowed."""
+    return interpret(tree, arithmetic(_constant, values, _FUNCTIONS, _power))
 
-    def name(self, name: Name) -> Any:
-        return self.values[name.name]
 
-    def call(self, call: Call) -> Any:
-        return (np.cos if call.function == "cos" else np.sin)(interpret(call.argument, self))
+def _constant(number: Fraction) -> Any:
+    value = np.float64(number)
+    if number and abs(value) < _TINY:
+        raise FloatingPointError("the number is nearer to zero than doubles are")
+    return value
 
-    def negative(self, value: Any) -> Any:
-        return -value
 
-    def joined(self, left: Any, step: Step, right: Any) -> Any:
-        return OPERATORS[step.operator](left, right)
-
-    def power(self, base: Any, power: Power, exponent: Any) -> Any:
-        whole = not np.ndim(exponent) and math.isclose(float(exponent), round(float(exponent)))
-        return base ** round(float(exponent)) if whole else base**exponent
+def _power(base: Any, exponent: Any) -> Any:
+    whole = not np.ndim(exponent) and math.isclose(float(exponent), round(float(exponent)))
+    return base ** round(float(exponent)) if whole else base**exponent

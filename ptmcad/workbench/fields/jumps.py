@@ -15,9 +15,8 @@ from __future__ import annotations
 import numpy as np
 
 from ptmcad.answer.boundaries import NONE
-from ptmcad.answer.regionmap import RegionMap
 from ptmcad.ask.fields.equations import Flags, Floats, Integers, apart
-from ptmcad.workbench.fields.pixelsolver import BATCH, Filling, GridPoints, PixelSolver
+from ptmcad.workbench.fields.pixelsolver import BATCH, PixelSolver
 
 PARTS = (1, 4, 16, 64)
 """Of the way between two pixels: more are taken while the neighbour's solution is not met."""
@@ -25,18 +24,12 @@ PARTS = (1, 4, 16, 64)
 Pixels = tuple[Integers, Integers]
 
 
-def jumps(
-    result: RegionMap,
-    follower: PixelSolver,
-    solutions: Filling,
-    chosen: Integers,
-    region: Integers,
-) -> tuple[Flags, Flags]:
+def jumps(solver: PixelSolver, chosen: Integers, region: Integers) -> tuple[Flags, Flags]:
     """Between which neighbours of one region the branch of the chosen solution changes.
 
     Parameters
     ----------
-    solutions : at the follower's places.
+    solver : with the solutions at all places.
     chosen : shape (rows, columns): the number of the chosen solution, `NONE` where there is none.
     region : shape (rows, columns).
 
@@ -56,21 +49,12 @@ def jumps(
         for first in range(0, len(r), 100 * BATCH):
             part = slice(first, first + 100 * BATCH)
             own = (r[part], c[part])
-            jump[own] = _differ(
-                result, follower, solutions, chosen, own, (own[0] + up, own[1] + 1 - up)
-            )
+            jump[own] = _differ(solver, chosen, own, (own[0] + up, own[1] + 1 - up))
         found.append(jump)
     return found[0], found[1]
 
 
-def _differ(
-    result: RegionMap,
-    follower: PixelSolver,
-    solutions: Filling,
-    chosen: Integers,
-    start: Pixels,
-    end: Pixels,
-) -> Flags:
+def _differ(solver: PixelSolver, chosen: Integers, start: Pixels, end: Pixels) -> Flags:
     """Whether following the chosen solutions from pixels does not lead to those that are chosen at
     others.
     """
@@ -80,24 +64,21 @@ def _differ(
         if not len(left):
             break
         a, b = ((rows[left], columns[left]) for rows, columns in (start, end))
-        at = _followed(result, follower, solutions.at[:, *a, chosen[a]], (a, b), parts)
-        apart[left] = _nearest(at, solutions.at[:, *b, :], follower.angles) != chosen[b]
+        at = _followed(solver, solver.at[:, *a, chosen[a]], (a, b), parts)
+        apart[left] = _nearest(at, solver.at[:, *b, :], solver.angles) != chosen[b]
     return apart
 
 
-def _followed(
-    result: RegionMap, follower: PixelSolver, at: Floats, ends: tuple[Pixels, Pixels], parts: int
-) -> Floats:
+def _followed(solver: PixelSolver, at: Floats, ends: tuple[Pixels, Pixels], parts: int) -> Floats:
     """Solutions of shape (n, pixels), led along straight ways between pixels in equal parts; nan
     where that fails.
     """
     shares = np.arange(1, parts + 1) / parts
     x, y = (
         along[ends[0]][:, None] + (along[ends[1]] - along[ends[0]])[:, None] * shares
-        for along in (follower.places.x, follower.places.y)
+        for along in (solver.x, solver.y)
     )
-    ways = GridPoints(x, y, np.full((len(at[0]), parts), NONE))
-    on_way = PixelSolver(result, ways)
+    on_way = PixelSolver(solver.result, x, y, np.full(x.shape, NONE))
     rows = np.arange(len(at[0]))
     for step in range(parts):
         at = on_way.converged(rows, np.full(len(rows), step), at[:, :, None])[:, :, 0]

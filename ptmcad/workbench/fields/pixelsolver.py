@@ -12,11 +12,10 @@ What is not done in this way is left to exact poses, one by one.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 
 import numpy as np
 
-from ptmcad.answer.boundaries import NONE, Grid
+from ptmcad.answer.boundaries import NONE
 from ptmcad.answer.regionmap import Cell, RegionMap
 from ptmcad.ask.fields.equations import (
     Flags,
@@ -42,36 +41,6 @@ APART = 1e-7
 """Solutions are different when they are further apart, and than a thousand last steps."""
 
 
-@dataclass(frozen=True, slots=True)
-class GridPoints:
-    """Points of the window in rows, such that neighbours lie near each other: a grid's pixels, or
-    steps of a path.
-
-    All arrays have the shape (rows, columns): coordinates, and the number of the cell, `NONE` where
-    there is none.
-    """
-
-    x: Floats
-    y: Floats
-    cell: Integers
-
-
-def places_of(grid: Grid) -> GridPoints:
-    """The centres of a grid's pixels."""
-    x, y = np.broadcast_arrays(grid.x[None, :], grid.y[:, None])
-    return GridPoints(x, y, grid.cell)
-
-
-@dataclass(slots=True)
-class Filling:
-    """Solutions at pixels, shape (n, rows, columns, most); nan where there are fewer. ``done``
-    where they are all.
-    """
-
-    at: Floats
-    done: Flags
-
-
 def starting_points(model: Model, cell: Cell, only_stable: bool) -> Floats:
     """The certified solutions at a cell's sample: shape (n, number)."""
     angles, width = len(model.angles), 2 * len(model.angles) + len(model.reals)
@@ -88,25 +57,30 @@ def starting_points(model: Model, cell: Cell, only_stable: bool) -> Floats:
 
 
 class PixelSolver:
-    """Newton's method for a slice's model at any of some places.
+    """Newton's method for a slice's model at points of the window in rows, such that neighbours lie
+    near each other: a grid's pixels, or steps of a path; and the solutions that it has found.
 
     Attributes
     ----------
+    x, y, cell : shape (rows, columns): coordinates, and the number of the cell, `NONE` where there
+        is none.
     total : how many solutions each place has, by the map: all of them, or the stable ones where
         only these are known; `NONE` where it is not known.
-    index : for each cell its counts by index; None where they are not known.
+    at : shape (n, rows, columns, most): the solutions; nan where there are fewer.
+    done : where they are all.
     """
 
-    def __init__(self, result: RegionMap, places: GridPoints):
-        self.model = result.slice.model
-        self.names, self.places = result.slice.axis_names, places
-        self.only_stable = result.only_stable
-        counts = [c.stable if self.only_stable else c.total for c in result.cells]
+    def __init__(self, result: RegionMap, x: Floats, y: Floats, cell: Integers):
+        self.result, self.model = result, result.slice.model
+        self.x, self.y, self.cell = x, y, cell
+        counts = [c.stable if result.only_stable else c.total for c in result.cells]
         table = np.array([*(NONE if v is None else v for v in counts), NONE], dtype=np.int64)
-        self.total: Integers = table[places.cell]
-        self.index = tuple(c.index for c in result.cells)
-        self.values = parameters_at(result.slice, places.x, places.y)
+        self.total: Integers = table[cell]
+        self.values = parameters_at(result.slice, x, y)
         self.angles = len(self.model.angles)
+        most = max(int(self.total.max()), 1)
+        self.at = np.full((len(self.model.unknowns), *cell.shape, most), np.nan)
+        self.done: Flags = self.total <= 0
 
     def state(self, rows: Integers, columns: Integers, at: Floats) -> ModelState:
         """At pixels, points of shape (n, pixels, solutions)."""
@@ -159,15 +133,12 @@ class PixelSolver:
         """Whether the solutions count, and as many have each index as the map says."""
         state = self.state(rows, columns, np.nan_to_num(at))
         good = np.asarray((state.counts | empty).all(axis=1))
-        if self.only_stable:
+        if self.result.only_stable:
             return np.asarray(good & (state.stable | empty).all(axis=1))
         good &= ((determinant(state.jacobian) != 0) | empty).all(axis=1)
-        negative, cells = (
-            (eigenvalues(state.hessian) < 0).sum(axis=0),
-            self.places.cell[rows, columns],
-        )
+        negative, cells = (eigenvalues(state.hessian) < 0).sum(axis=0), self.cell[rows, columns]
         for cell in np.unique(cells):
-            index = self.index[cell] if cell != NONE else None
+            index = self.result.cells[cell].index if cell != NONE else None
             if index is not None:
                 here = cells == cell
                 for k, number in enumerate(index):
@@ -175,21 +146,16 @@ class PixelSolver:
         return good
 
 
-def filled(result: RegionMap, follower: PixelSolver) -> Filling:
-    """The solutions at every pixel, as far as neighbours lead to them."""
-    total = follower.total
-    most = max(int(total.max()), 1)
-    rows, columns = total.shape
-    filling = Filling(
-        np.full((len(result.slice.model.unknowns), rows, columns, most), np.nan), total <= 0
-    )
-    for stride in _strides(max(rows, columns)):
-        seen = np.zeros((rows, columns), dtype=np.bool_)
+def filled(result: RegionMap, x: Floats, y: Floats, cell: Integers) -> PixelSolver:
+    """The solutions at places as of `PixelSolver`, as far as neighbours lead to them."""
+    solver = PixelSolver(result, x, y, cell)
+    for stride in _strides(max(cell.shape)):
+        seen = np.zeros(cell.shape, dtype=np.bool_)
         seen[::stride, ::stride] = True
-        _spread(filling, follower, seen, stride)
-        _begin(result, filling, follower, seen)
-        _spread(filling, follower, seen, stride)
-    return filling
+        _spread(solver, seen, stride)
+        _begin(solver, seen)
+        _spread(solver, seen, stride)
+    return solver
 
 
 def _strides(size: int) -> Iterator[int]:
@@ -201,72 +167,62 @@ def _strides(size: int) -> Iterator[int]:
         stride //= 2
 
 
-def _begin(
-    result: RegionMap,
-    filling: Filling,
-    follower: PixelSolver,
-    seen: Flags,
-) -> None:
+def _begin(solver: PixelSolver, seen: Flags) -> None:
     """In each cell of which no pixel is done: from the sample's solutions to the pixels that are
     nearest to it.
     """
-    cells = follower.places.cell
-    finished = set(np.unique(cells[filling.done & (cells != NONE)]).tolist())
-    for number in np.unique(cells[seen & ~filling.done & (cells != NONE)]).tolist():
-        cell = result.cells[number]
-        start = starting_points(result.slice.model, cell, follower.only_stable)
+    cells, done = solver.cell, solver.done
+    finished = set(np.unique(cells[done & (cells != NONE)]).tolist())
+    for number in np.unique(cells[seen & ~done & (cells != NONE)]).tolist():
+        cell = solver.result.cells[number]
+        start = starting_points(solver.model, cell, solver.result.only_stable)
         if number in finished or not start.shape[1]:
             continue
-        rows, columns = np.nonzero(seen & ~filling.done & (cells == number))
-        x, y = float(cell.sample[0]), float(cell.sample[1])
-        away = np.hypot(
-            *(
-                (at[rows, columns] - own) / (np.ptp(np.append(at, own)) or 1.0)
-                for at, own in ((follower.places.x, x), (follower.places.y, y))
-            )
+        rows, columns = np.nonzero(seen & ~done & (cells == number))
+        ways = (
+            (at[rows, columns] - float(own)) / (np.ptp(np.append(at, float(own))) or 1.0)
+            for at, own in zip((solver.x, solver.y), cell.sample, strict=True)
         )
-        nearest = np.argsort(away, kind="stable")[:9]
-        if start.shape[1] == follower.total[rows[0], columns[0]]:
-            guess = np.full((len(start), len(nearest), filling.at.shape[3]), np.nan)
+        nearest = np.argsort(np.hypot(*ways), kind="stable")[:9]
+        if start.shape[1] == solver.total[rows[0], columns[0]]:
+            guess = np.full((len(start), len(nearest), solver.at.shape[3]), np.nan)
             guess[:, :, : start.shape[1]] = start[:, None, :]
-            _take(filling, follower, rows[nearest], columns[nearest], guess)
+            _take(solver, rows[nearest], columns[nearest], guess)
 
 
-def _spread(filling: Filling, follower: PixelSolver, seen: Flags, stride: int) -> None:
+def _spread(solver: PixelSolver, seen: Flags, stride: int) -> None:
     """From pixels that are done to their neighbours of the same count, until none is left that this
     helps.
     """
-    total = follower.total
+    total, done = solver.total, solver.done
     steps = [
         (a * stride, b * stride)
         for a, b in ((0, 1), (0, -1), (1, 0), (-1, 0), (1, 1), (1, -1), (-1, 1), (-1, -1))
     ]
-    tried = {step: filling.done | ~seen for step in steps}
+    tried = {step: done | ~seen for step in steps}
     moved = True
     while moved:
         moved = False
         for step in steps:
-            rows, columns = np.nonzero(~tried[step] & ~filling.done)
-            s, t = rows + step[0], columns + step[1]
-            inside = (s >= 0) & (s < total.shape[0]) & (t >= 0) & (t < total.shape[1])
-            rows, columns, s, t = rows[inside], columns[inside], s[inside], t[inside]
-            use = filling.done[s, t] & (total[rows, columns] == total[s, t])
+            own = np.argwhere(~tried[step] & ~done)
+            other = own + step
+            inside = ((other >= 0) & (other < total.shape)).all(axis=1)
+            (rows, columns), (s, t) = own[inside].T, other[inside].T
+            use = done[s, t] & (total[rows, columns] == total[s, t])
             rows, columns, s, t = rows[use], columns[use], s[use], t[use]
             tried[step][rows, columns] = True
             if len(rows):
-                moved |= _take(filling, follower, rows, columns, filling.at[:, s, t])
+                moved |= _take(solver, rows, columns, solver.at[:, s, t])
 
 
-def _take(
-    filling: Filling, follower: PixelSolver, rows: Integers, columns: Integers, guess: Floats
-) -> bool:
+def _take(solver: PixelSolver, rows: Integers, columns: Integers, guess: Floats) -> bool:
     """Solutions at pixels from a guess, kept where they are all; whether some are."""
     found = False
     for first in range(0, len(rows), BATCH):
         part = slice(first, first + BATCH)
-        at, good = follower.solved(rows[part], columns[part], guess[:, part])
+        at, good = solver.solved(rows[part], columns[part], guess[:, part])
         r, c = rows[part][good], columns[part][good]
-        filling.at[:, r, c] = at[:, good]
-        filling.done[r, c] = True
+        solver.at[:, r, c] = at[:, good]
+        solver.done[r, c] = True
         found |= bool(len(r))
     return found

@@ -34,7 +34,7 @@ from ptmcad.options import Progress
 from ptmcad.question.shipped import FIRST, SECOND
 from ptmcad.question.slice import within_doubles
 from ptmcad.text.numerals import equalities
-from ptmcad.workbench.fields.pixelsolver import GridPoints, PixelSolver, filled
+from ptmcad.workbench.fields.pixelsolver import filled
 from ptmcad.workbench.fields.quantityfield import Choice, choice_of, complete, exact_at
 
 FRAMES, MAX_FRAMES = 90, 600
@@ -46,10 +46,6 @@ two.
 SAME = 1e-6
 _BESIDE = Fraction(1, 10**6)
 """Of the path, by which a step is moved that lies on a curve of the map."""
-
-
-class LostError(PtmcadError):
-    """A pose that could not be followed although it has to be there."""
 
 
 def motion_of(
@@ -77,7 +73,7 @@ def motion_of(
     ConfigError
         For a path or pose that has no meaning here, a number of frames that is none, or a map
         without cells.
-    LostError
+    PtmcadError
         Where the map has the pose and it was not found.
 
     >>> import ptmcad
@@ -135,18 +131,16 @@ def _stops(result: RegionMap, walk: Track, frames: int) -> list[_Stop]:
         points.append(point)
         cells.append(cell)
     x, y = (np.array([[float(point[k]) for point in points]]) for k in (0, 1))
-    places = GridPoints(x, y, np.array([cells], dtype=np.int64))
-    follower = PixelSolver(result, places)
-    solutions = filled(result, follower)
-    complete(result, lambda _, column: points[column], solutions, follower.total)
+    solver = filled(result, x, y, np.array([cells], dtype=np.int64))
+    complete(solver, lambda _, column: points[column])
     stops: list[_Stop] = []
     for k, (share, point, number) in enumerate(zip(shares, points, cells, strict=True)):
         step = Step(float(share), point, (), None)
         if number == NONE:
             stops.append(_open(result, walk, share, step))
             continue
-        counts, many = result.cells[number], int(follower.total[0, k])
-        known = solutions.at[:, 0, k, :many] if solutions.done[0, k] and many >= 0 else None
+        counts, many = result.cells[number], int(solver.total[0, k])
+        known = solver.at[:, 0, k, :many] if solver.done[0, k] and many >= 0 else None
         counted = replace(step, total=counts.total, stable=counts.stable)
         stops.append((share, _with_others(walk, counted, known), known))
     return stops
@@ -199,7 +193,7 @@ def _walked(
 ) -> tuple[list[Step], list[Fall], str]:
     """All steps; where the pose vanishes those of its fall, as far as it goes."""
     at, own = start, int(walk.state(stops[0][1].at, start[:, None]).negatives[0])
-    steps: list[Step] = [_taken(walk, stops[0], at)]
+    steps = [_taken(walk, stops[0], at)]
     falls: list[Fall] = []
     for number, (last, stop) in enumerate(pairwise(stops), 1):
         if progress is not None:
@@ -209,22 +203,22 @@ def _walked(
             at, done, leaves = followed(walk, at, done, until, own)
             if done >= until:
                 break
+            where = f"at {_where(walk, done)}"
             if leaves:
-                return (
-                    steps,
-                    falls,
-                    f"at {_where(walk, done)} the pose leaves what the inequalities allow",
-                )
+                return steps, falls, f"{where} the pose leaves what the inequalities allow"
             beyond = min(done + MIN_STEP, until)
             before, after = (
                 _cell(result, walk.course.at(Fraction(share))) for share in (done, beyond)
             )
             if before == after != NONE:
-                raise LostError(
+                raise PtmcadError(
                     f"the pose was lost at {100 * done:.6g} % of the path, in the middle of a region"
                 )
-            if end := _no_fall(walk, own, done):
-                return steps, falls, end
+            why = walk.model.criterion.no_descent
+            if own and not why:
+                why = "the pose, which was not stable, vanishes or becomes one of another kind"
+            if why:  # nothing is said about where it goes
+                return steps, falls, f"{where} {why}"
             way = descent(lambda point, share=beyond: walk.at(share, point), at)  # type: ignore[misc]
             if (
                 way is None
@@ -234,23 +228,15 @@ def _walked(
                 return (
                     steps,
                     falls,
-                    f"at {_where(walk, done)} the pose vanishes, and no other was reached from there",
+                    f"{where} the pose vanishes, and no other was reached from there",
                 )
-            if _length(way) > SLIP:
-                fallen = _fallen(walk, beyond, way, fall_frames)
-                falls.append(_fall(walk, beyond, way))
+            if (lengths := _lengths(way))[-1] > SLIP:
+                fallen = _fallen(walk, beyond, way, np.linspace(0.0, lengths[-1], fall_frames))
+                falls.append(_fall(beyond, fallen[0], fallen[-1]))
                 steps += fallen
             at, done = way[-1], beyond
         steps.append(_taken(walk, stop, at))
     return steps, falls, ""
-
-
-def _no_fall(walk: Track, own: int, done: float) -> str:
-    """Why nothing is said about where a pose goes that vanishes; empty where it falls."""
-    why = walk.model.criterion.no_descent
-    if own and not why:
-        why = "the pose, which was not stable, vanishes or becomes one of another kind"
-    return why and f"at {_where(walk, done)} {why}"
 
 
 def _where(walk: Track, share: float) -> str:
@@ -266,7 +252,7 @@ def _taken(walk: Track, stop: _Stop, at: Floats) -> Step:
     if solutions is not None:
         gap = apart(solutions, at[:, None], len(walk.model.angles))
         if not np.abs(gap).max(axis=0).min(initial=np.inf) < SAME * (1 + np.abs(at).max()):
-            raise LostError(
+            raise PtmcadError(
                 f"at {_where(walk, float(share))} the followed pose is none of those that are counted"
             )
     return _seen(walk, step, at)
@@ -280,23 +266,20 @@ def _seen(walk: Track, step: Step, at: Floats) -> Step:
     return replace(step, unknowns=tuple(map(float, at)), height=height, points=points)
 
 
-def _length(way: Floats) -> float:
-    return float(np.linalg.norm(np.diff(way, axis=0), axis=1).sum())
+def _lengths(way: Floats) -> Floats:
+    """Of a way up to each of its points."""
+    return np.append(0.0, np.cumsum(np.linalg.norm(np.diff(way, axis=0), axis=1)))
 
 
-def _fallen(walk: Track, share: float, way: Floats, number: int) -> list[Step]:
-    """So many steps of a fall, at equal distances."""
-    done = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(way, axis=0), axis=1))])
-    places = np.linspace(0.0, done[-1], number)
+def _fallen(walk: Track, share: float, way: Floats, places: Floats) -> list[Step]:
+    """The steps of a fall, at these distances from its start."""
     point = walk.course.at(Fraction(share))
-    taken = np.array([np.interp(places, done, along) for along in way.T]).T
+    taken = np.array([np.interp(places, _lengths(way), along) for along in way.T]).T
     return [_seen(walk, Step(share, point, (), None, True), at) for at in taken]
 
 
-def _fall(walk: Track, share: float, way: Floats) -> Fall:
-    point = walk.course.at(Fraction(share))
-    heights = [
-        _seen(walk, Step(share, point, (), None), at).height or 0.0 for at in (way[0], way[-1])
-    ]
-    before, after = (tuple(map(float, at)) for at in (way[0], way[-1]))
-    return Fall(share, (float(point[0]), float(point[1])), before, after, heights[0] - heights[1])
+def _fall(share: float, first: Step, last: Step) -> Fall:
+    """A fall by its first step and its last one."""
+    deep = (first.height or 0.0) - (last.height or 0.0)
+    x, y = map(float, first.at)
+    return Fall(share, (x, y), first.unknowns, last.unknowns, deep)

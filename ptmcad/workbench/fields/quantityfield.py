@@ -27,7 +27,7 @@ from ptmcad.text.expressions import values_at
 from ptmcad.workbench.fields.barrier import barriers
 from ptmcad.workbench.fields.fieldvalues import OPTION, Valued, quantity_of
 from ptmcad.workbench.fields.jumps import jumps
-from ptmcad.workbench.fields.pixelsolver import Filling, GridPoints, PixelSolver, filled, places_of
+from ptmcad.workbench.fields.pixelsolver import PixelSolver, filled
 
 BATCH, LARGE_BATCH = 300, 20_000
 """Pixels at a time: what they take stays in the processor's cache; of descents few are long, which
@@ -152,30 +152,28 @@ def field_of(
     ConfigError
         For what this map does not know, or a map without cells.
     """
-    model, (quantity, choice) = result.slice.model, request
+    quantity, choice = request
     if result.only_stable:
         _check_stable(request)
     grid = grid_of(result, columns, rows)
-    follower = PixelSolver(result, places_of(grid))
-    solutions = filled(result, follower)
-    missed = complete(result, lambda r, c: centre(result, grid, r, c), solutions, follower.total)
+    x, y = np.broadcast_arrays(grid.x[None, :], grid.y[:, None])
+    solver = filled(result, x, y, grid.cell)
+    missed = complete(solver, lambda r, c: centre(result, grid, r, c))
     values = np.full(grid.region.shape, np.nan)
     chosen = np.full(grid.region.shape, NONE, dtype=np.int64)
-    places = np.nonzero(solutions.done & (follower.total > 0))
+    places = np.nonzero(solver.done & (solver.total > 0))
     batch = LARGE_BATCH if quantity.is_barrier else BATCH
     for first in range(0, len(places[0]), batch):
         progress("pixels", first, len(places[0]))
         r, c = (p[first : first + batch] for p in places)
-        values[r, c], chosen[r, c] = _at_pixels(
-            model, quantity, choice, follower, (r, c), solutions.at[:, r, c]
-        )
+        values[r, c], chosen[r, c] = _at_pixels(solver, request, (r, c), solver.at[:, r, c])
     if quantity.is_barrier:  # there is one wherever there is another stable pose
-        lacking = np.isnan(values) & solutions.done & (grid.stable >= max(2, choice.rank))
+        lacking = np.isnan(values) & solver.done & (grid.stable >= max(2, choice.rank))
         missed += int(lacking.sum())
     beyond = np.isinf(values)
     values[beyond] = np.nan
-    other = jumps(result, follower, solutions, chosen, grid.region)
-    number, difference = _checked(result, quantity, choice, values, follower, checks)
+    other = jumps(solver, chosen, grid.region)
+    number, difference = _checked(solver, request, values, checks)
     return Field(
         quantity.name,
         str(choice),
@@ -230,39 +228,32 @@ def _most_of(result: RegionMap, kind: str) -> int | None:
         return None
     found = []
     for cell in result.cells:
-        unstable = None if cell.total is None or cell.stable is None else cell.total - cell.stable
-        # where the indices are not known, there are no more of one than are unstable
-        inner, last = (
-            (unstable, unstable) if cell.index is None else (sum(cell.index[1:-1]), cell.index[-1])
-        )
-        counts = {
-            "stable": cell.stable,
-            "pose": cell.total,
-            "unstable": unstable,
-            "saddle": inner,
-            "maximum": last,
-        }
-        found.append(counts[kind])
-    known = [number for number in found if number is not None]
-    return max(known) if len(known) == len(found) else None
+        if kind in ("stable", "pose"):
+            number = cell.stable if kind == "stable" else cell.total
+        elif kind == "unstable" or cell.index is None:
+            # where the indices are not known, there are no more of one than are unstable
+            if cell.total is None or cell.stable is None:
+                return None
+            number = cell.total - cell.stable
+        else:
+            number = cell.index[-1] if kind == "maximum" else sum(cell.index[1:-1])
+        if number is None:
+            return None
+        found.append(number)
+    return max(found)
 
 
 def _at_pixels(
-    model: Model,
-    quantity: Valued,
-    choice: Choice,
-    follower: PixelSolver,
-    places: tuple[Integers, Integers],
-    at: Floats,
+    solver: PixelSolver, request: FieldRequest, places: tuple[Integers, Integers], at: Floats
 ) -> tuple[Floats, Integers]:
     """The quantity of the chosen solution at pixels, and its number there, `NONE` without one; at :
     shape (n, pixels, most)."""
-    rows, columns = places
+    (rows, columns), (quantity, choice) = places, request
     here = np.nan_to_num(at)
-    turns = here[: len(model.angles)]
+    turns = here[: solver.angles]
     # an angle of -180 degrees is one of 180, and rounding decides nothing
     turns[turns < EQUAL - np.pi] += 2 * np.pi
-    state = follower.state(rows, columns, here)
+    state = solver.state(rows, columns, here)
     there = ~np.isnan(at[0])
     order, fits = _in_order(state, here, there, choice)
     own = np.arange(len(rows))
@@ -273,16 +264,14 @@ def _at_pixels(
     if quantity.is_barrier:
 
         def evaluate(pixels: Integers, points: Floats) -> ModelState:
-            return follower.state(rows[pixels], columns[pixels], points)
+            return solver.state(rows[pixels], columns[pixels], points)
 
-        values = barriers(evaluate, at, k, len(model.angles))
+        values = barriers(evaluate, at, k, solver.angles)
     else:
-        given = {name: v[rows, columns] if np.ndim(v) else v for name, v in follower.values.items()}
-        coordinates = (follower.places.x[rows, columns], follower.places.y[rows, columns])
-        axes = dict(zip(follower.names, coordinates, strict=True))
+        axes = dict(zip(solver.result.slice.axis_names, (solver.x, solver.y), strict=True))
         given = {
-            name: np.asarray(v)[:, None] if np.ndim(v) else v
-            for name, v in {**given, **axes}.items()
+            name: v[rows, columns][:, None] if np.ndim(v) else v
+            for name, v in {**solver.values, **axes}.items()
         }
         values = quantity.values(state, here, given)[own, k]
     return np.where(found, values, np.nan), np.where(found, k, NONE)
@@ -308,23 +297,19 @@ def _in_order(
     np.put_along_axis(rank, ascending[:, 1:], np.cumsum(steps, axis=1), axis=1)
     # the larger unknown first
     order = np.lexsort((*(-np.round(p, 9) for p in at[::-1]), rank, ~stable, ~there), axis=1)
-    kinds = {"pose": there, "stable": stable, "unstable": there & ~stable}
-    if choice.kind in ("saddle", "maximum"):
-        negative = state.negatives
-        n = len(at)
-        kinds |= {
-            "saddle": there & (negative > 0) & (negative < n),
-            "maximum": there & (negative == n),
-        }
-    return order, kinds[choice.kind]
+    match choice.kind:
+        case "pose":
+            return order, there
+        case "stable":
+            return order, stable
+        case "unstable":
+            return order, there & ~stable
+    negative = state.negatives
+    all_ = negative == len(at)
+    return order, there & (all_ if choice.kind == "maximum" else (negative > 0) & ~all_)
 
 
-def complete(
-    result: RegionMap,
-    point: Callable[[int, int], tuple[Fraction, Fraction]],
-    solutions: Filling,
-    total: Integers,
-) -> int:
+def complete(solver: PixelSolver, point: Callable[[int, int], tuple[Fraction, Fraction]]) -> int:
     """Exact poses where neighbours led nowhere; the number of places that stay without their
     solutions.
 
@@ -332,20 +317,20 @@ def complete(
     ----------
     point : gives the exact coordinates of a row and a column.
     """
-    rows, columns = np.nonzero(~solutions.done & (total > 0))
-    for row, column in list(zip(rows.tolist(), columns.tolist(), strict=True))[:MAX_LEFT]:
-        poses = exact_at(result, *point(row, column))
+    total, done = solver.total, solver.done
+    for row, column in np.argwhere(~done & (total > 0))[:MAX_LEFT].tolist():
+        poses = exact_at(solver.result, *point(row, column))
         points = [unknowns_of(p) for p in poses.equilibria]
         if len(points) != total[row, column]:  # of a map of the stable ones only
             points = [unknowns_of(p) for p in poses.equilibria if p.stable]
         if len(points) == total[row, column]:
-            solutions.at[:, row, column, : len(points)] = np.array(points).T
-            solutions.done[row, column] = True
-    return int((~solutions.done & (total > 0)).sum())
+            solver.at[:, row, column, : len(points)] = np.array(points).T
+            done[row, column] = True
+    return int((~done & (total > 0)).sum())
 
 
 def centre(
-    result: RegionMap, grid: Grid | GridPoints, row: int, column: int
+    result: RegionMap, grid: Grid | PixelSolver, row: int, column: int
 ) -> tuple[Fraction, Fraction]:
     """A pixel's centre, exactly."""
     (x, y), (rows, columns) = result.slice.axes, grid.cell.shape
@@ -358,17 +343,13 @@ def exact_at(result: RegionMap, x: Fraction, y: Fraction) -> Poses:
 
 
 def _checked(
-    result: RegionMap,
-    quantity: Valued,
-    choice: Choice,
-    values: Floats,
-    follower: PixelSolver,
-    checks: int,
+    solver: PixelSolver, request: FieldRequest, values: Floats, checks: int
 ) -> tuple[int, float]:
     """How many random pixels were compared with exact poses, and the largest difference as a share.
 
     Where certified poses could not be distinguished there is nothing to compare with.
     """
+    result, (quantity, choice) = solver.result, request
     rows, columns = np.nonzero(~np.isnan(values))
     if not len(rows) or not checks:
         return 0, 0.0
@@ -377,7 +358,7 @@ def _checked(
     picked = source.sample(range(len(rows)), min(checks, len(rows)))
     compared = []
     for k in picked:
-        poses = exact_at(result, *centre(result, follower.places, int(rows[k]), int(columns[k])))
+        poses = exact_at(result, *centre(result, solver, int(rows[k]), int(columns[k])))
         if poses.equilibria and poses.status is not Status.UNDECIDED:
             compared.append((k, np.array([unknowns_of(p) for p in poses.equilibria]).T))
     if not compared:
@@ -388,6 +369,6 @@ def _checked(
         at[:, n, : points.shape[1]] = points
     own = [k for k, _ in compared]
     places = (rows[own], columns[own])
-    exact, _ = _at_pixels(result.slice.model, quantity, choice, follower, places, at)
+    exact, _ = _at_pixels(solver, request, places, at)
     difference = np.abs(exact - values[places]) / size
     return len(compared), float(np.where(np.isnan(difference), np.inf, difference).max())

@@ -30,7 +30,7 @@ from ptmcad.process.output import locked, reason
 from ptmcad.text.node import Node
 from ptmcad.text.numerals import fraction_of
 from ptmcad.text.textfile import read_bytes
-from ptmcad.workbench.sweeps.member import AREAS, WIDEST, Failed, Found, Outcome, Refused
+from ptmcad.workbench.sweeps.member import AREAS, WIDEST, Outcome
 
 FORMAT = "ptmcad-sweep/1"
 INDEX, RESULTS = "index.sqlite", "results"
@@ -185,27 +185,21 @@ class Index:
 
     def record(self, number: int, outcome: Outcome) -> None:
         """Enter what became of a member; a failed one stays to be tried again."""
-        if isinstance(outcome, Found):
+        columns = {
+            "state": outcome.state.value, "error": outcome.error, "seconds": outcome.seconds,
+        }  # fmt: skip
+        if (found := outcome.summary) is not None:
             data = outcome.text.encode()
-            file = self._write(number, data)
-            found = outcome.summary
-            self.rows.execute(
-                "UPDATE members SET state = 'done', status = ?, cells = ?, regions = ?, undetermined = ?, areas = ?, "
-                "widest = ?, error = '', file = ?, digest = ?, size = ?, seconds = ?, attempts = attempts + 1 "
-                "WHERE number = ?",
-                (
-                    found.status, found.cells, found.regions, found.undetermined,
-                    json.dumps(AREAS.write(found.areas)),
-                    None if found.widest is None else json.dumps(WIDEST.write(found.widest)),
-                    file, hashlib.sha256(data).hexdigest(), len(data), outcome.seconds, number,
-                ),
-            )  # fmt: skip
-            return
-        state = State.REFUSED if isinstance(outcome, Refused) else State.FAILED
-        seconds = None if isinstance(outcome, Failed) else outcome.seconds
+            columns |= {
+                "status": found.status, "cells": found.cells, "regions": found.regions,
+                "undetermined": found.undetermined, "areas": json.dumps(AREAS.write(found.areas)),
+                "widest": None if found.widest is None else json.dumps(WIDEST.write(found.widest)),
+                "file": self._write(number, data), "digest": hashlib.sha256(data).hexdigest(), "size": len(data),
+            }  # fmt: skip
+        changes = ", ".join(f"{column} = ?" for column in columns)
         self.rows.execute(
-            "UPDATE members SET state = ?, error = ?, seconds = ?, attempts = attempts + 1 WHERE number = ?",
-            (state.value, outcome.error, seconds, number),
+            f"UPDATE members SET {changes}, attempts = attempts + 1 WHERE number = ?",
+            (*columns.values(), number),
         )
 
     def _write(self, number: int, data: bytes) -> str:
@@ -382,21 +376,8 @@ def _member(folder: Path, names: Sequence[str], row: tuple[Any, ...]) -> Member:
     ConfigError
         When it is none that this program has written.
     """
-    (
-        number,
-        parameters,
-        same_as,
-        seconds,
-        attempts,
-        state,
-        status,
-        cells,
-        regions,
-        open_share,
-        areas,
-        widest,
-    ) = row[:12]
-    error, file, digest, _ = row[12:]
+    number, parameters, same_as, seconds, attempts, state, *facts = row
+    status, cells, regions, open_share, areas, widest, error, file, digest, _ = facts
     summary = None
     with _undamaged(folder, f"the row of member {number}"):
         values = json.loads(parameters)

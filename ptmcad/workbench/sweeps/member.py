@@ -16,8 +16,8 @@ from typing import Any
 
 from ptmcad.answer.counts import counted_by
 from ptmcad.answer.regionmap import RegionMap
-from ptmcad.answer.sweep import Bounds, CountedArea, Summary, Widest
-from ptmcad.answer.widths import Maximum, overall
+from ptmcad.answer.sweep import Bounds, CountedArea, State, Summary, Widest
+from ptmcad.answer.widths import overall
 from ptmcad.ask.classification import region_map
 from ptmcad.errors import ConfigError, HypothesisError, LimitReached, PtmcadError
 from ptmcad.options import Options
@@ -59,30 +59,22 @@ class Wanted:
 
 
 @dataclass(frozen=True, slots=True)
-class Found:
-    """A member's result: the text of its document without timings, and what an index holds of it."""
+class Outcome:
+    """What became of a member: a result, or the reason why there is none.
 
-    text: str
-    summary: Summary
-    seconds: float
+    Attributes
+    ----------
+    state : refused where another attempt would end in the same way, failed where it may not.
+    text : the result's document without timings.
+    summary : what an index holds of it.
+    """
 
+    state: State
+    error: str = ""
+    text: str = ""
+    summary: Summary | None = None
+    seconds: float | None = None
 
-@dataclass(frozen=True, slots=True)
-class Refused:
-    """Why no result of these values is possible; another attempt would end in the same way."""
-
-    error: str
-    seconds: float
-
-
-@dataclass(frozen=True, slots=True)
-class Failed:
-    """Why an attempt gave no result, though another one may."""
-
-    error: str
-
-
-Outcome = Found | Refused | Failed
 
 _ONE_AT_A_TIME = threading.Lock()
 """FLINT's precision belongs to the process: a cluster's worker with several threads computes one
@@ -107,19 +99,19 @@ def compute(
     version : of the process that asks.
     """
     if version != __version__:
-        return Failed(
-            f"this process has ptmcad {__version__}, and the sweep was asked with {version}"
-        )
+        why = f"this process has ptmcad {__version__}, and the sweep was asked with {version}"
+        return Outcome(State.FAILED, why)
     with _ONE_AT_A_TIME:
         started = perf_counter()
         try:
             result = region_map(question.slice(number), wanted.options)
             summary = summary_of(result, wanted)
         except LimitReached:
-            return Failed(out_of_time(wanted.timeout))
+            return Outcome(State.FAILED, out_of_time(wanted.timeout))
         except PtmcadError as error:
-            return Refused(reason(error), perf_counter() - started)
-        return Found(result.to_json(timings=False), summary, perf_counter() - started)
+            return Outcome(State.REFUSED, reason(error), seconds=perf_counter() - started)
+        text = result.to_json(timings=False)
+        return Outcome(State.DONE, "", text, summary, perf_counter() - started)
 
 
 def reason(error: PtmcadError) -> str:
@@ -180,16 +172,12 @@ def _widest(slice: Slice, along: str) -> Widest:
     over = next(name for name in slice.axis_names if name != along)
     return Widest(
         along,
-        _width(maxima),
+        # each of the maxima may be the largest width
+        bounds(max(m.width.low for m in maxima), max(m.width.high for m in maxima)),
         tuple(bounds(m.at.low, m.at.high) for m in maxima),
         "; ".join(m.words(over) for m in maxima),
         attainment=overall(maxima).value,
     )
-
-
-def _width(maxima: tuple[Maximum, ...]) -> Bounds:
-    """The bounds of the largest width of all: each of the maxima may be it."""
-    return bounds(max(m.width.low for m in maxima), max(m.width.high for m in maxima))
 
 
 def _width_from(*values: Any) -> Widest:

@@ -27,9 +27,9 @@ from queue import Empty, SimpleQueue
 from time import monotonic
 from typing import Any
 
+from ptmcad.answer.sweep import State
 from ptmcad.errors import ConfigError, OutputError, shown
-from ptmcad.extras import Extra, require
-from ptmcad.workbench.sweeps.member import Failed, out_of_time
+from ptmcad.workbench.sweeps.member import Outcome, out_of_time
 from ptmcad.workbench.worker import Task, Worker
 
 _OVERRUN = 1.0
@@ -43,7 +43,7 @@ process.
 
 
 Answer = tuple[int, Any]
-"""A member's number and what became of it: what the task returned, or a `Failed`."""
+"""A member's number and what became of it: what the task returned, or an `Outcome` that has failed."""
 
 
 class Pool:
@@ -105,7 +105,7 @@ class Pool:
         except (EOFError, OSError):
             self._died(worker, None)
             return
-        self._done.append((number, Failed(error) if error else outcome))
+        self._done.append((number, Outcome(State.FAILED, error) if error else outcome))
         if error:
             self._ended(worker)
 
@@ -113,7 +113,7 @@ class Pool:
         """The first of a worker's members has failed; the others were not begun."""
         first = worker.numbers.pop(0)
         status = self._ended(worker)
-        self._done.append((first, Failed(why or _how_ended(status))))
+        self._done.append((first, Outcome(State.FAILED, why or _how_ended(status))))
 
     def _ended(self, worker: Worker) -> int:
         """Do without a worker; others get its members. Its exit status."""
@@ -186,14 +186,13 @@ class Cluster:
     Raises
     ------
     ConfigError
-        When distributed is not installed, or no scheduler answers at the address.
+        When no scheduler answers at the address.
     """
 
     def __init__(self, compute: Callable[[int], Any], address: str) -> None:
-        require(Extra.distributed, key="--scheduler")
         import distributed
 
-        client: Any = distributed.Client
+        client = distributed.Client
         self.compute, self.address = compute, address
         try:
             self.client: Any = client(address, timeout=CONNECT_SECONDS, set_as_default=False)
@@ -234,7 +233,11 @@ class Cluster:
             while True:
                 number, done = self._answers.get(timeout=0 if found else patience)
                 del self._under_way[number]  # its copy on the cluster is given up
-                outcome = done.result() if done.status == "finished" else Failed(_why(done))
+                outcome = (
+                    done.result()
+                    if done.status == "finished"
+                    else Outcome(State.FAILED, _why(done))
+                )
                 found.append((number, outcome))
         except Empty:
             if self.client.status not in ("running", "connecting"):

@@ -15,31 +15,29 @@ import json
 import os
 from collections import Counter, deque
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from fractions import Fraction
 from functools import partial
 from itertools import chain
 from pathlib import Path
 from time import monotonic
 from typing import TYPE_CHECKING, Any
 
-from ptmcad.answer.sweep import Sweep
+from ptmcad.answer.sweep import State, Sweep
 from ptmcad.ask.classification import prepare
 from ptmcad.errors import ConfigError, LimitReached, OutputError, PtmcadError
 from ptmcad.extras import Extra, require
 from ptmcad.options import Progress
-from ptmcad.question.config.sweeps import Sweeping, Values, sweep_from
+from ptmcad.question.config.sweeps import Sweeping, sweep_from
 from ptmcad.question.shipped import RecordSource
 from ptmcad.question.slice import Slice
 from ptmcad.text.numerals import text_of
 from ptmcad.text.parsing import share_for
 from ptmcad.version import __version__
 from ptmcad.workbench.sweeps.index import Index, opened, read_sweep
-from ptmcad.workbench.sweeps.member import Failed, Wanted, computing, reason
-from ptmcad.workbench.sweeps.pool import Pool, answers_of
+from ptmcad.workbench.sweeps.member import Outcome, Wanted, computing, reason
+from ptmcad.workbench.sweeps.pool import Cluster, Pool, answers_of
 
 if TYPE_CHECKING:
     from ptmcad.show.report.atlas import Thumbnail
-    from ptmcad.workbench.sweeps.pool import Cluster
 
 RETRIES = 2
 """How often a member is tried again that has failed."""
@@ -91,16 +89,25 @@ def sweep(
     """
     question = sweep_from(config)
     wanted = wanted_of(question, wanted)
+    if scheduler is not None:  # whether or not there is anything left to compute
+        require(Extra.distributed, key="--scheduler")
     place = Path(f"{question.name}-sweep") if folder is None else Path(folder)
     with opened(place) as index:
-        index.claim(_facts(question), _asked(question, wanted))
+        facts = {
+            "name": question.name,
+            "names": json.dumps(question.names, ensure_ascii=False),
+            "members": str(len(question)),
+            "version": __version__,
+        }
+        index.claim(facts, _asked(question, wanted))
         index.check(question.names)
         run = _Run(question, index, retries, progress, timeout)
         try:
-            run.all(_workers(question, wanted, jobs, scheduler))
+            run.all(partial(_workers, question, wanted, jobs, scheduler))
         except (LimitReached, OutputError) as stopped:
+            done = f"{index.states().get(State.DONE, 0)} of {len(question)} members are done"
             raise type(stopped)(
-                f"{stopped}; {_left(index, question)}; the same command goes on"
+                f"{stopped}; {done}, in {place}; the same command goes on"
             ) from stopped
         finally:
             index.share()
@@ -147,23 +154,13 @@ def axes_of(question: Sweeping) -> tuple[str, ...]:
 
 def _workers(
     question: Sweeping, wanted: Wanted, jobs: int | None, scheduler: str | None
-) -> Callable[[], Pool | Cluster]:
-    """What makes the processes that compute, once something is to be computed."""
-    if scheduler is None:
-
-        def pool() -> Pool:
-            prepare(
-                question.slice(0), wanted.options
-            )  # compiles once for all, where that is needed
-            return Pool(computing(question, wanted), jobs or processors(), wanted.timeout)
-
-        return pool
-    from ptmcad.workbench.sweeps.pool import Cluster
-
-    require(
-        Extra.distributed, key="--scheduler"
-    )  # whether or not there is anything left to compute
-    return lambda: Cluster(computing(question, wanted), scheduler)
+) -> Pool | Cluster:
+    """The processes that compute."""
+    task = computing(question, wanted)
+    if scheduler is not None:
+        return Cluster(task, scheduler)
+    prepare(question.slice(0), wanted.options)  # compiles once for all, where that is needed
+    return Pool(task, jobs or processors(), wanted.timeout)
 
 
 def processors() -> int:
@@ -172,33 +169,23 @@ def processors() -> int:
     return len(affinity(0)) if affinity is not None else os.cpu_count() or 1
 
 
-def _facts(question: Sweeping) -> dict[str, str]:
-    """What the index says of the sweep as a whole."""
-    return {
-        "name": question.name,
-        "names": json.dumps(question.names, ensure_ascii=False),
-        "members": str(len(question)),
-        "version": __version__,
-    }
-
-
 def _asked(question: Sweeping, wanted: Wanted) -> str:
     """A digest of all that results depend on."""
     record = question.record
     first = _slice_data(question.slice(0))
     values = [
-        [[name, *_values_data(v)] for name, v in product.items()] for product in question.products
+        [
+            # a list of values, or a progression
+            [name, ",".join(map(text_of, v))]
+            if isinstance(v, tuple)
+            else [name, *(text_of(x) for x in (v.first, v.step, v.number))]
+            for name, v in product.items()
+        ]
+        for product in question.products
     ]
     texts = {name: scalar.text for name, scalar in record.values.items()}
     options = [None if value is None else str(value) for value in dataclasses.astuple(wanted)]
     return hashlib.sha256(json.dumps([first, values, texts, options]).encode()).hexdigest()
-
-
-def _values_data(values: Values) -> list[str]:
-    """A list of values or a progression, as texts."""
-    if isinstance(values, tuple):
-        return [",".join(map(text_of, values))]
-    return [text_of(field) for field in (values.first, values.step, values.number)]
 
 
 def _slice_data(slice: Slice) -> Any:
@@ -206,11 +193,6 @@ def _slice_data(slice: Slice) -> Any:
     from ptmcad.show.document.slicedocument import SLICE
 
     return SLICE.write(slice)
-
-
-def _left(index: Index, question: Sweeping) -> str:
-    done = sum(number for state, number in index.states().items() if state.value == "done")
-    return f"{done} of {len(question)} members are done, in {index.folder}"
 
 
 class _Run:
@@ -256,9 +238,9 @@ class _Run:
         finally:
             workers.close()
 
-    def _settle(self, number: int, outcome: Any) -> None:
+    def _settle(self, number: int, outcome: Outcome) -> None:
         self.index.record(number, outcome)
-        if isinstance(outcome, Failed) and self.failures[number] < self.retries:
+        if outcome.state is State.FAILED and self.failures[number] < self.retries:
             self.failures[number] += 1
             self.again.append(number)
             return
@@ -286,12 +268,9 @@ class _Run:
 
     def _new(self) -> Iterator[int]:
         """The members that no run has come to, as they are entered into the index."""
-        question = self.question
         for low in range(self.planned, self.total, _AT_ONCE):
             self._patience()
-            entered = [
-                self._entry(question, k) for k in range(low, min(low + _AT_ONCE, self.total))
-            ]
+            entered = [self._entry(k) for k in range(low, min(low + _AT_ONCE, self.total))]
             with self.index.transaction():
                 fresh = [self.index.plan(*entry) for entry in entered]
             for entry, is_fresh in zip(entered, fresh, strict=True):
@@ -300,14 +279,12 @@ class _Run:
                 else:
                     self._count()
 
-    def _entry(
-        self, question: Sweeping, number: int
-    ) -> tuple[int, dict[str, str], bytes | None, str]:
+    def _entry(self, number: int) -> tuple[int, dict[str, str], bytes | None, str]:
         """A member's number, its values, a digest of its slice, and why there is no slice."""
-        values: dict[str, Fraction] = question.values(number)
+        values = self.question.values(number)
         parameters = {name: text_of(value) for name, value in values.items()}
         try:
-            data = json.dumps(_slice_data(question.slice(number)), sort_keys=True)
+            data = json.dumps(_slice_data(self.question.slice(number)), sort_keys=True)
         except PtmcadError as error:
             return number, parameters, None, reason(error)
         return number, parameters, hashlib.sha256(data.encode()).digest(), ""
@@ -335,7 +312,7 @@ def sketches(
     try:
         found = answers_of(pool, lambda: next(left, None), lambda: None)
         for done, (number, drawn) in enumerate(found, 1):
-            if isinstance(drawn, Failed):
+            if isinstance(drawn, Outcome):
                 raise OutputError(f"member {number} cannot be drawn: {drawn.error}")
             if progress is not None:
                 progress("drawings", done, len(numbers))
