@@ -194,7 +194,7 @@ def _inside(result: RegionMap, at: Place) -> bool:
     )
 
 
-class Added(NamedTuple):
+class _Added(NamedTuple):
     """What is drawn beside the map itself."""
 
     overlay: Path | None
@@ -203,7 +203,7 @@ class Added(NamedTuple):
     surface: bool
 
 
-def _with_points(stored: RegionMap, drawing: DrawingOptions, added: Added) -> DrawingOptions:
+def _with_points(stored: RegionMap, drawing: DrawingOptions, added: _Added) -> DrawingOptions:
     """The drawing with measured points, and with the poses at points; both are checked before poses
     are computed.
     """
@@ -221,7 +221,7 @@ def _with_points(stored: RegionMap, drawing: DrawingOptions, added: Added) -> Dr
     return drawing._replace(poses=tuple((place, poses_at(stored, place)) for place in chosen))
 
 
-def _idle(result: Path, drawing: DrawingOptions, added: Added) -> tuple[Idle, ...]:
+def _idle(result: Path, drawing: DrawingOptions, added: _Added) -> tuple[Idle, ...]:
     """Options that a picture of more than a map does not heed."""
     several = added.compare is not None or kind_of(result) == "family"
     below = several and drawing.style.legend is LegendPlace.RIGHT
@@ -232,7 +232,7 @@ def _idle(result: Path, drawing: DrawingOptions, added: Added) -> tuple[Idle, ..
     )
 
 
-def _check_compared(added: Added, formats: Formats) -> None:
+def _check_compared(added: _Added, formats: Formats) -> None:
     if added.compare is None:
         return
     if added.at or added.overlay is not None:
@@ -285,9 +285,9 @@ def _compared(
 
 
 def _plot_family(
-    result: Path, folder: Path, formats: Formats, drawing: DrawingOptions, added: Added
+    result: Path, folder: Path, formats: Formats, drawing: DrawingOptions, added: _Added
 ) -> None:
-    if added._replace(surface=False) != Added(None, (), None, False):
+    if added._replace(surface=False) != _Added(None, (), None, False):
         raise ConfigError(
             "points and comparisons are for one map: give a member's file", file=str(result)
         )
@@ -343,14 +343,14 @@ def _surface(family: FamilyMap, file: Path) -> BoundarySurface:
     help="Of a family with its changes: draw NAME-3d as the surface between regions of different counts.",
 )  # fmt: skip
 @limit_options
-@gathered(added=Added)
+@gathered(added=_Added)
 def command(
     *,
     result: Path,
     out: Path | None,
     formats: Formats,
     drawing: DrawingOptions,
-    added: Added,
+    added: _Added,
     limits: ResourceLimits,
 ) -> None:
     """Draw RESULT, a JSON file of `ptmcad classify`, or write it as numbers.

@@ -28,7 +28,7 @@ from ptmcad.cli.drawing import report_written, write_answer
 from ptmcad.cli.limits import ResourceLimits, compile_certified, held, limit_options
 from ptmcad.cli.locate import point_of
 from ptmcad.cli.progress import ProgressBar
-from ptmcad.cli.range_answers import RangeAnswer, RangeRequest, answer, is_enclosed, request_codec
+from ptmcad.cli.range_answers import RangeRequest, answer, is_enclosed, request_codec
 from ptmcad.cli.slices import range_option, set_option, typed_line
 from ptmcad.errors import ConfigError, ExpressionError
 from ptmcad.model import ptm
@@ -239,22 +239,25 @@ def command(
             if enclosed:
                 compile_certified(limits.timeout, progress)
             progress("intervals ...", 0, 1)
-            found = answer(slice, request)
-        click.echo(found.text)
+            text, found, makers = answer(slice, request)
+        click.echo(text)
         if names:
-            make = {name: found.pictures[part] for name, part in pictures.items()}
-            text = partial(_text, slice, request, found)
-            write_answer(out, names, lambda name: make[name](), text)
+            write_answer(
+                out,
+                names,
+                lambda name: makers[pictures[name]](),
+                partial(_document, slice, request, found),
+            )
             report_written(out, names)
 
 
-def _text(slice: Slice, request: RangeRequest, found: RangeAnswer) -> str:
+def _document(slice: Slice, request: RangeRequest, parts: Mapping[str, Any]) -> str:
     """The answer as JSON."""
     from ptmcad.show.document.slicedocument import SLICE
     from ptmcad.show.ranges.rangedocument import document
 
     asked = {"slice": SLICE.write(slice), "request": request_codec().write(request)}
-    return document(slice.name, slice.mechanism, {**found.parts, **asked})
+    return document(slice.name, slice.mechanism, {**parts, **asked})
 
 
 def _parts(request: RangeRequest) -> list[str]:

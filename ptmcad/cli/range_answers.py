@@ -62,19 +62,14 @@ def request_codec() -> Codec[RangeRequest]:
     )
 
 
-@dataclass(frozen=True, slots=True)
-class RangeAnswer:
-    """What was found, for the terminal, the JSON and the pictures, these by the ends of their
-    names.
-    """
-
-    text: str
-    parts: Mapping[str, Any]
-    pictures: Mapping[str, Callable[[], Any]]
-
-
-def answer(slice: Slice, request: RangeRequest) -> RangeAnswer:
+def answer(
+    slice: Slice, request: RangeRequest
+) -> tuple[str, dict[str, Any], dict[str, Callable[[], Any]]]:
     """Compute all that is asked for.
+
+    Returns
+    -------
+    The text for the terminal, the parts of the JSON, and the pictures by the ends of their names.
 
     Raises
     ------
@@ -88,7 +83,7 @@ def answer(slice: Slice, request: RangeRequest) -> RangeAnswer:
         texts.append(text)
         parts |= rangedocument.part(found, request.digits)
         pictures[end] = make
-    return RangeAnswer("\n\n".join(texts), parts, pictures)
+    return "\n\n".join(texts), parts, pictures
 
 
 def _answers(

@@ -361,7 +361,7 @@ def _verified_range(
         load_certified(progress)
 
     def anew(digits: int) -> Any:
-        parts = answer(slice, replace(request, digits=digits)).parts
+        _, parts, _ = answer(slice, replace(request, digits=digits))
         asked = {"slice": data["slice"], "request": data["request"]}
         return json.loads(document(slice.name, slice.mechanism, {**parts, **asked}))
 

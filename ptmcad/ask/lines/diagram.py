@@ -10,8 +10,7 @@ tried in between. The joins are no claim.
 from __future__ import annotations
 
 import itertools
-from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
 from fractions import Fraction
 from math import cos, pi
 from typing import Any
@@ -38,15 +37,9 @@ CLEAR = 0.6
 """A join is clear when it is shorter than this part of the next best."""
 DIGITS = 6
 
-_Place = tuple[float, ...]
 
-
-@dataclass(frozen=True, slots=True)
-class Sample:
-    """All solutions at a value."""
-
-    value: Fraction
-    poses: tuple[Pose, ...]
+_Sample = tuple[Fraction, tuple[Pose, ...]]
+"""A value, and all solutions there."""
 
 
 def branch_diagram(
@@ -114,41 +107,32 @@ class SolutionsOnLine:
     def __init__(self, model: Model, parameters: Expressions, digits: int = DIGITS):
         self.model, self.parameters, self.digits = model, parameters, digits
         self.undecided: list[Fraction] = []
-        self._known: dict[Fraction, Sample | None] = {}
+        self._known: dict[Fraction, tuple[Pose, ...] | None] = {}
 
-    def at(self, value: Fraction) -> Sample | None:
+    def at(self, value: Fraction) -> tuple[Pose, ...] | None:
         """The solutions at a value; None where they are not all known, or one is degenerate."""
         if value not in self._known:
-            self._known[value] = self._found(value)
+            found = poses_at(self.model, values_at(self.parameters, value), self.digits)
+            decided = found.status in (Status.EXACT, Status.CERTIFIED)
+            self.undecided += () if decided else (value,)
+            self._known[value] = found.equilibria if decided else None
         return self._known[value]
 
-    def _found(self, value: Fraction) -> Sample | None:
-        parameters = values_at(self.parameters, value)
-        found = poses_at(self.model, parameters, self.digits)
-        if found.status not in (Status.EXACT, Status.CERTIFIED):
-            self.undecided.append(value)
-            return None
-        return Sample(value, found.equilibria)
-
-    def samples(self, low: Fraction, high: Fraction) -> list[Sample]:
+    def samples(self, low: Fraction, high: Fraction) -> list[_Sample]:
         """Solutions at values in an interval, close enough to be joined."""
-        known = [
-            s
-            for value in values_between(low, high, SAMPLES, NEAR)
-            if (s := self.at(value)) is not None
-        ]
+        known = [(v, poses) for v in _values(low, high) if (poses := self.at(v)) is not None]
         result = known[:1]
         for sample in known[1:]:
             result += [*self._between(result[-1], sample, HALVINGS), sample]
         return result
 
-    def _between(self, first: Sample, second: Sample, depth: int) -> list[Sample]:
-        if depth == 0 or _pairs(first, second)[1]:
+    def _between(self, first: _Sample, second: _Sample, depth: int) -> list[_Sample]:
+        if depth == 0 or _pairs(first[1], second[1])[1]:
             return []
-        width = second.value - first.value
-        middle = self.at(short((first.value + second.value) / 2, width))
-        if middle is None:
+        value = _short((first[0] + second[0]) / 2, second[0] - first[0])
+        if (poses := self.at(value)) is None:
             return []
+        middle = (value, poses)
         return [
             *self._between(first, middle, depth - 1),
             middle,
@@ -156,41 +140,33 @@ class SolutionsOnLine:
         ]
 
 
-def values_between(
-    first: Fraction, last: Fraction, number: int, near: Iterable[Fraction]
-) -> list[Fraction]:
-    """Values on the way from the first to the last, closer to both, where branches turn.
-
-    Parameters
-    ----------
-    number : of parts.
-    near : parts of the way from each end where there is one, too.
-    """
-    parts = {1 - share if from_last else share for share in near for from_last in (False, True)}
-    parts |= {Fraction(round((1 - cos(pi * k / number)) * 2**19), 2**20) for k in range(1, number)}
-    return [short(first + part * (last - first), abs(last - first)) for part in sorted(parts)]
+def _values(low: Fraction, high: Fraction) -> list[Fraction]:
+    """Values in an interval, closer to both ends, where branches turn."""
+    parts = {part for share in NEAR for part in (share, 1 - share)}
+    parts |= {
+        Fraction(round((1 - cos(pi * k / SAMPLES)) * 2**19), 2**20) for k in range(1, SAMPLES)
+    }
+    return [_short(low + part * (high - low), high - low) for part in sorted(parts)]
 
 
-def short(value: Fraction, width: Fraction) -> Fraction:
+def _short(value: Fraction, width: Fraction) -> Fraction:
     """A number near a value with few digits, against the width of where it lies."""
     unit = 2**24 * (width.denominator // width.numerator + 1)
     return Fraction(round(value * unit), unit)
 
 
-def place_of(pose: Pose) -> _Place:
-    return (*map(float, pose.cosines_sines), *map(float, pose.reals))
-
-
-def _pairs(first: Sample, second: Sample) -> tuple[dict[int, int], bool]:
+def _pairs(first: Sequence[Pose], second: Sequence[Pose]) -> tuple[dict[int, int], bool]:
     """For the solutions at one value those at the next that are nearest, and whether no other comes
     near to that.
     """
-    before, after = ([(p.index, p.stable, place_of(p)) for p in s.poses] for s in (first, second))
+    before, after = (
+        [[float(x) for x in (*p.cosines_sines, *p.reals)] for p in s] for s in (first, second)
+    )
     distances = sorted(
-        (sum((a - b) ** 2 for a, b in zip(p[2], q[2], strict=True)) ** 0.5, i, j)
-        for i, p in enumerate(before)
-        for j, q in enumerate(after)
-        if p[:2] == q[:2]
+        (sum((a - b) ** 2 for a, b in zip(before[i], after[j], strict=True)) ** 0.5, i, j)
+        for i, p in enumerate(first)
+        for j, q in enumerate(second)
+        if (p.index, p.stable) == (q.index, q.stable)
     )
     pairs: dict[int, int] = {}
     lengths: dict[int, float] = {}
@@ -203,7 +179,7 @@ def _pairs(first: Sample, second: Sample) -> tuple[dict[int, int], bool]:
     return pairs, clear and len(pairs) == len(before) == len(after)
 
 
-def _joined(samples: Sequence[Sample], asked: Sequence[Quantity]) -> list[Branch]:
+def _joined(samples: Sequence[_Sample], asked: Sequence[Quantity]) -> list[Branch]:
     """The branches through the samples of an interval; one that finds no continuation ends."""
     if not samples:
         return []
@@ -212,13 +188,14 @@ def _joined(samples: Sequence[Sample], asked: Sequence[Quantity]) -> list[Branch
         return BranchPoint(value, tuple(of_pose(q, pose) for q in asked))
 
     done: list[tuple[Pose, list[BranchPoint]]] = []
-    growing = {k: (p, [point(samples[0].value, p)]) for k, p in enumerate(samples[0].poses)}
-    for first, second in itertools.pairwise(samples):
+    (value, poses), *_ = samples
+    growing = {k: (p, [point(value, p)]) for k, p in enumerate(poses)}
+    for (_, first), (value, second) in itertools.pairwise(samples):
         pairs, _ = _pairs(first, second)
         done += [branch for k, branch in growing.items() if k not in pairs]
         following = {j: growing[i] for i, j in pairs.items()}
-        for j, pose in enumerate(second.poses):
-            following.setdefault(j, (pose, []))[1].append(point(second.value, pose))
+        for j, pose in enumerate(second):
+            following.setdefault(j, (pose, []))[1].append(point(value, pose))
         growing = following
     done += growing.values()
     return [Branch(pose.stable, pose.index, tuple(points)) for pose, points in done]

@@ -121,11 +121,10 @@ def what_meets(family: LineSystem, current: Reached, after: Fraction) -> Meeting
 
 def _solutions(family: LineSystem, value: Fraction) -> list[PlacedSolution] | None:
     """All solutions at a value; None when they are not all known, or one was not enclosed."""
-    sample = family.solutions.at(value)
-    if sample is None:
+    if (poses := family.solutions.at(value)) is None:
         return None
     found = []
-    for pose in sample.poses:
+    for pose in poses:
         place = at_value(family.branches, value, guess_of(pose))
         if place is None:
             return None
