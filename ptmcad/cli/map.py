@@ -55,7 +55,7 @@ said.
 @tolerance_option
 @style_options
 @out_option
-@format_option(FORMATS, f"Files to write, of {', '.join(FORMATS)}.", "png")
+@format_option(FORMATS, default="png")
 @limit_options
 def command(
     *,

@@ -39,7 +39,7 @@ from ptmcad.cli.limits import ResourceLimits, held, limit_options
 from ptmcad.cli.locate import point_of, rows_of
 from ptmcad.cli.progress import ProgressBar
 from ptmcad.cli.storedresults import kind_of, read_result, stored_in
-from ptmcad.errors import ConfigError, ExpressionError, blamed, shown, shown_path
+from ptmcad.errors import ConfigError, blamed, shown, shown_path
 from ptmcad.process.output import Writer, check_writable, write_files
 from ptmcad.question.config import point_from_mapping, portable_file
 from ptmcad.question.counts import Shades
@@ -47,7 +47,7 @@ from ptmcad.show import render
 from ptmcad.show.style import LegendPlace
 from ptmcad.show.table import count_text, index_text
 from ptmcad.text.numerals import equalities, shortest_text
-from ptmcad.text.parsing import rational
+from ptmcad.text.parsing import number_for
 
 if TYPE_CHECKING:
     from ptmcad.show.render.overlay import Agreement, Measured
@@ -181,10 +181,7 @@ def _agreement(result: RegionMap, at: Place, count: str) -> Agreement:
 
 
 def _numbers(result: RegionMap, point: Mapping[str, str], key: str | None) -> Place:
-    try:
-        first, second = (rational(point[name]) for name in result.slice.axis_names)
-    except ExpressionError as error:
-        raise ConfigError(str(error), key=key) from error
+    first, second = (number_for(key, point[name]) for name in result.slice.axis_names)
     return first, second
 
 

@@ -110,9 +110,10 @@ def _answers(
     @cache
     def line() -> SolutionsOnLine:
         """A picture of the paths shows branches too: those of the same solutions."""
-        from ptmcad.ask.lines.diagram import solutions_on_line
+        from ptmcad.ask.lines.diagram import SolutionsOnLine
+        from ptmcad.question.line import line_of
 
-        return solutions_on_line(slice, along, at)
+        return SolutionsOnLine(line_of(slice, along, at, free=True))
 
     if request.start is not None:
         from ptmcad.ask.lines.follower import pose_paths
@@ -156,5 +157,5 @@ def _paths_and_branches(slice: Slice, found: Any, line: Callable[[], SolutionsOn
     model = found.model
     if len(model.unknowns) > MAX_UNKNOWNS or not model.criterion.is_told:
         return render.draw_paths(slice, found)
-    diagram = branch_diagram(slice, found.along.name, found.at, model.sorted_unknowns, line=line())
+    diagram = branch_diagram(slice, found.along.name, found.at, model.sorted_unknowns, found=line())
     return render.draw_paths_and_branches(slice, found, diagram)

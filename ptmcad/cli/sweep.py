@@ -58,7 +58,7 @@ def _wanted(
 @format_option(
     FORMATS,
     "What to write of the whole sweep besides the index and the results: csv (a line for each member), "
-    "html (an atlas), gif or mp4 (a film of the maps).  [default: none]",
+    "html (an atlas), gif or mp4 (a film of the maps).",
 )
 @click.option(
     "--fps",

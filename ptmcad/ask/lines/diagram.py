@@ -21,11 +21,9 @@ from ptmcad.answer.regionmap import Status
 from ptmcad.ask.lines.along import intervals
 from ptmcad.ask.quantities import Quantity, of_pose, quantity, unit_of
 from ptmcad.ask.solving import poses_at
-from ptmcad.model import Model
 from ptmcad.options import Progress
-from ptmcad.question.line import on_line, varying_axis
+from ptmcad.question.line import Line, line_of
 from ptmcad.question.slice import Slice
-from ptmcad.text.expressions import Expressions, values_at
 
 SAMPLES = 24
 """Values in each interval, closer to its ends, where branches turn."""
@@ -48,7 +46,7 @@ def branch_diagram(
     at: Mapping[str, Any],
     names: Sequence[str],
     progress: Progress | None = None,
-    line: SolutionsOnLine | None = None,
+    found: SolutionsOnLine | None = None,
 ) -> Branches:
     """All branches of solutions on a line of a slice, with some quantities at each of their points.
 
@@ -57,8 +55,7 @@ def branch_diagram(
     along, at : as for `ptmcad.intervals`.
     names : as `ptmcad.ask.quantities.quantity` takes them.
     progress : called as progress("branches: interval", done, total).
-    line : `solutions_on_line` of the same slice and line, where other questions were asked of it
-        before.
+    found : the solutions on the same line, where other questions were asked of it before.
 
     Raises
     ------
@@ -66,53 +63,37 @@ def branch_diagram(
         For a name that the model does not have, and as the intervals do.
     """
     asked = [quantity(slice.model, name) for name in names]
-    varying, other, value = varying_axis(slice, along, at)
-    line = line or solutions_on_line(slice, along, at)
+    found = found or SolutionsOnLine(line_of(slice, along, at, free=True))
     branches: list[Branch] = []
     stretches = intervals(slice, along, at, digits=DIGITS).stretches
     for number, (low, high) in enumerate(stretches):
         if progress is not None:
             progress("branches: interval", number, len(stretches))
-        branches += _joined(line.samples(low, high), asked)
-    fixed = {other: value}
-    shown, units = (q.name for q in asked), (unit_of(q, slice) for q in asked)
-    undecided = tuple(line.undecided)
+        branches += _joined(found.samples(low, high), asked)
     return Branches(
         slice.name,
         slice.model,
-        slice.axes[varying],
-        fixed,
-        tuple(shown),
-        tuple(units),
+        found.line.along,
+        found.line.at,
+        tuple(q.name for q in asked),
+        tuple(unit_of(q, slice) for q in asked),
         tuple(branches),
-        undecided,
+        tuple(found.undecided),
     )
-
-
-def solutions_on_line(slice: Slice, along: str, at: Mapping[str, Any]) -> SolutionsOnLine:
-    """The line's solutions, for more than one `branch_diagram`.
-
-    Raises
-    ------
-    ConfigError
-        As `branch_diagram` does.
-    """
-    varying, _, value = varying_axis(slice, along, at)
-    return SolutionsOnLine(slice.model, on_line(slice, varying, value))
 
 
 class SolutionsOnLine:
     """The solutions on a line, each found when it is first asked for."""
 
-    def __init__(self, model: Model, parameters: Expressions, digits: int = DIGITS):
-        self.model, self.parameters, self.digits = model, parameters, digits
+    def __init__(self, line: Line, digits: int = DIGITS):
+        self.line, self.digits = line, digits
         self.undecided: list[Fraction] = []
         self._known: dict[Fraction, tuple[Pose, ...] | None] = {}
 
     def at(self, value: Fraction) -> tuple[Pose, ...] | None:
         """The solutions at a value; None where they are not all known, or one is degenerate."""
         if value not in self._known:
-            found = poses_at(self.model, values_at(self.parameters, value), self.digits)
+            found = poses_at(self.line.model, self.line.values(value), self.digits)
             decided = found.status in (Status.EXACT, Status.CERTIFIED)
             self.undecided += () if decided else (value,)
             self._known[value] = found.equilibria if decided else None
