@@ -6,7 +6,6 @@ from signs of its polynomial at centres; a certified map's pixels from its cover
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from fractions import Fraction
 
 import numpy as np
@@ -15,7 +14,7 @@ from numpy.typing import NDArray
 
 from ptmcad.algebra.real_roots import RealRoot, sign_at
 from ptmcad.answer.boundaries import NONE, Grid
-from ptmcad.answer.regionmap import Cell, RegionMap
+from ptmcad.answer.regionmap import RegionMap
 from ptmcad.ask.location import component_cells, locate, stack_over
 from ptmcad.cover.rectangles import Cover
 from ptmcad.cover.subdivision import FREE
@@ -70,15 +69,13 @@ def grid(result: RegionMap, columns: int = 200, rows: int | None = None) -> Grid
         y,
         result.slice.axis_names,
         cells,
-        _of(result, cells, lambda c: c.region),
-        _of(result, cells, lambda c: c.stable),
-        _of(result, cells, lambda c: c.total),
+        *(_of(result, cells, name) for name in ("region", "stable", "total")),
     )
 
 
-def _of(result: RegionMap, cells: Labels, value: Callable[[Cell], int | None]) -> Labels:
+def _of(result: RegionMap, cells: Labels, name: str) -> Labels:
     """What the cells say, at their pixels."""
-    known = [value(cell) for cell in result.cells]
+    known = [getattr(cell, name) for cell in result.cells]
     table = np.array([*(NONE if v is None else v for v in known), NONE], dtype=np.int64)
     return table[cells]  # the label `NONE` is the last entry
 

@@ -28,7 +28,7 @@ from time import monotonic
 from typing import Any
 
 from ptmcad.errors import ConfigError, OutputError, shown
-from ptmcad.extras import Extra, require
+from ptmcad.extras import require
 from ptmcad.workbench.sweeps.member import Failed, out_of_time
 from ptmcad.workbench.worker import Task, Worker
 
@@ -190,7 +190,7 @@ class Cluster:
     """
 
     def __init__(self, compute: Callable[[int], Any], address: str) -> None:
-        require(Extra.distributed, key="--scheduler")
+        require("distributed", key="--scheduler")
         import distributed
 
         client: Any = distributed.Client

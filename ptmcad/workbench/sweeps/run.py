@@ -25,7 +25,7 @@ from typing import TYPE_CHECKING, Any
 from ptmcad.answer.sweep import Sweep
 from ptmcad.ask.classification import prepare
 from ptmcad.errors import ConfigError, LimitReached, OutputError, PtmcadError
-from ptmcad.extras import Extra, require
+from ptmcad.extras import require
 from ptmcad.options import Progress
 from ptmcad.question.config.sweeps import Sweeping, Values, sweep_from
 from ptmcad.question.shipped import RecordSource
@@ -160,9 +160,7 @@ def _workers(
         return pool
     from ptmcad.workbench.sweeps.pool import Cluster
 
-    require(
-        Extra.distributed, key="--scheduler"
-    )  # whether or not there is anything left to compute
+    require("distributed", key="--scheduler")  # whether or not there is anything left to compute
     return lambda: Cluster(computing(question, wanted), scheduler)
 
 
