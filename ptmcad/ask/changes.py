@@ -105,21 +105,28 @@ def changes_of(
         )
     check_count(asked.member(asked.values[0]))
     members = Members(common, options)
-    critical = _critical(members)
-    complete = not isinstance(critical, str)
+    return changes_among(members, _critical(members), tolerance)
+
+
+def changes_among(
+    members: Members, critical: tuple[RealRoot, ...] | str, tolerance: Fraction
+) -> Changes:
+    """The changes among members, with all values at which the arrangement can change, or why these
+    are not known.
+    """
     found, between, others, reason = (
         _bisected(members, tolerance, critical)
         if isinstance(critical, str)
         else _compared(members, critical, tolerance)
     )
     return Changes(
-        asked.free,
+        members.family.free,
         tuple(found),
         tuple(between),
         tuple(members.at(value).arrangement for value in between),
         tuple(others),
         _at_ends(members, tolerance),
-        complete,
+        not isinstance(critical, str),
         reason,
         tolerance,
     )
