@@ -8,43 +8,41 @@ Every message names the extra of ptmcad that installs what is missing.
 from __future__ import annotations
 
 import shutil
-from enum import Enum
 from importlib.util import find_spec
 
 from ptmcad.errors import ConfigError
 
-
-class Extra(Enum):
-    """Optional groups of packages, by their names in pyproject.toml: the package that is asked for,
-    and what needs it."""
-
-    certified = (
+EXTRAS = {
+    "certified": (
         "numba",
         "the certified engine, which springs with a free length need, runs on the package {}",
-    )
-    design = "scipy", "the best design is searched by the package {}"
-    bench = (
-        "scipy",
-        "distances are measured with the package {}",
-    )  # numba, too, is asked for by what needs it
-    data = "pandas", "a data frame needs the package {}"
-    notebook = "anywidget", "a living map in a notebook needs the package {}"
-    explore = "aiohttp", "the explorer's page is served by the package {}"
-    distributed = "distributed", "a scheduler's workers are asked through the package {} (Dask)"
-
-    @property
-    def package(self) -> str:
-        """By the name under which it is imported."""
-        return self.value[0]
-
-    @property
-    def message(self) -> str:
-        """What to do where it is missing."""
-        where = ", here and on every worker" if self is Extra.distributed else ""
-        return f"{self.value[1].format(self.package)}, which is not installed: pip install 'ptmcad[{self.name}]'{where}"
+    ),
+    "design": ("scipy", "the best design is searched by the package {}"),
+    # numba, too, is asked for by what needs it
+    "bench": ("scipy", "distances are measured with the package {}"),
+    "data": ("pandas", "a data frame needs the package {}"),
+    "notebook": ("anywidget", "a living map in a notebook needs the package {}"),
+    "explore": ("aiohttp", "the explorer's page is served by the package {}"),
+    "distributed": ("distributed", "a scheduler's workers are asked through the package {} (Dask)"),
+}
+"""Optional groups of packages, by their names in pyproject.toml: the package that is asked for, by
+the name under which it is imported, and what needs it.
+"""
 
 
-def require(extra: Extra, key: str | None = None) -> None:
+def remedy(extra: str) -> str:
+    """What to do where its package is missing."""
+    package, use = EXTRAS[extra]
+    where = ", here and on every worker" if extra == "distributed" else ""
+    return f"{use.format(package)}, which is not installed: pip install 'ptmcad[{extra}]'{where}"
+
+
+def missing(extra: str) -> str:
+    """The same; empty where the package is installed."""
+    return remedy(extra) if find_spec(EXTRAS[extra][0]) is None else ""
+
+
+def require(extra: str, key: str | None = None) -> None:
     """Refuse at once what would fail later.
 
     Parameters
@@ -56,8 +54,8 @@ def require(extra: Extra, key: str | None = None) -> None:
     ConfigError
         When the package is not installed.
     """
-    if find_spec(extra.package) is None:
-        raise ConfigError(extra.message, key=key)
+    if why := missing(extra):
+        raise ConfigError(why, key=key)
 
 
 def require_ffmpeg() -> str:

@@ -77,10 +77,10 @@ def _map_explore(self: RegionMap) -> Explorer:
     ConfigError
         When anywidget is not installed, or the map contradicts itself so that it cannot be drawn.
     """
-    from ptmcad.extras import Extra, require
+    from ptmcad.extras import require
     from ptmcad.workbench.fields.quantityfield import exact_at
 
-    require(Extra.notebook)
+    require("notebook")
     from ptmcad.show.widget import Explorer
 
     return Explorer(self, lambda x, y: exact_at(self, x, y))

@@ -13,7 +13,7 @@ from pathlib import Path
 import pytest
 
 from ptmcad.cli import run
-from ptmcad.extras import Extra
+from ptmcad.extras import EXTRAS, remedy
 from ptmcad.studies.stress import campaign
 from ptmcad.studies.stress.case import Case, chosen, free_lengths, point
 
@@ -104,7 +104,7 @@ def test_messages_name_an_extra_that_has_the_package() -> None:
     groups = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"][
         "optional-dependencies"
     ]
-    for extra in Extra:
-        assert any(need.startswith(f"{extra.package}>=") for need in groups[extra.name])
-        assert f"the package {extra.package}" in extra.message
-        assert f"pip install 'ptmcad[{extra.name}]'" in extra.message
+    for extra, (package, _) in EXTRAS.items():
+        assert any(need.startswith(f"{package}>=") for need in groups[extra])
+        assert f"the package {package}" in remedy(extra)
+        assert f"pip install 'ptmcad[{extra}]'" in remedy(extra)

@@ -6,11 +6,9 @@ was not decided lies in the changes.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from enum import Enum
 from fractions import Fraction
-from functools import partial
 from itertools import groupby, pairwise
 from operator import eq, le
 
@@ -70,9 +68,17 @@ class Change:
     @property
     def event(self) -> Event | None:
         """None where the numbers on a side are not known."""
-        if self.before is None or self.after is None:
+        before, after = self.before, self.after
+        if before is None or after is None:
             return None
-        return _event(self.before, self.after)
+        if before == after:
+            return Event.UNCHANGED
+        if (first := _pair(before, after)) is not None:
+            return Event.UNSTABLE_PAIR if first else Event.STABLE_PAIR
+        change = abs(after.total - before.total)
+        if change == 2 and before.index is None:
+            return Event.PAIR
+        return {0: Event.STABILITY, 1: Event.SINGLE}.get(change, Event.SEVERAL)
 
     @property
     def text(self) -> str:
@@ -85,25 +91,14 @@ class Change:
             if self.proved:
                 return " and ".join(kinds)
             return f"undecided whether there is a {' or a '.join(kinds)}"
-        if self.before is None or self.after is None:
+        if self.before is None or self.after is None or self.event is None:
             return ""
-        change = _words(self.before, self.after)
+        change = _words(self.event, self.before, self.after)
         if self.continuum is None:
             return change
         many = "equilibria" if self.before.index is not None else "solutions"
         further = "" if self.event is Event.UNCHANGED else f", {change}"
         return f"{self.continuum.value} {many}{further}"
-
-
-def _event(before: Counts, after: Counts) -> Event:
-    if before == after:
-        return Event.UNCHANGED
-    if (first := _pair(before, after)) is not None:
-        return Event.UNSTABLE_PAIR if first else Event.STABLE_PAIR
-    change = abs(after.total - before.total)
-    if change == 2 and before.index is None:
-        return Event.PAIR
-    return {0: Event.STABILITY, 1: Event.SINGLE}.get(change, Event.SEVERAL)
 
 
 def _pair(before: Counts, after: Counts) -> int | None:
@@ -120,13 +115,12 @@ def _pair(before: Counts, after: Counts) -> int | None:
     return first if pair else None
 
 
-def _words(before: Counts, after: Counts) -> str:
-    event, first = _event(before, after), _pair(before, after)
-    if event is Event.UNCHANGED:
-        return str(event.value)
-    if event is Event.STABILITY:
-        return str(event.value) if before.index is not None else "solutions change their stability"
-    what = event.value
+def _words(event: Event, before: Counts, after: Counts) -> str:
+    what, first = str(event.value), _pair(before, after)
+    if event is Event.STABILITY and before.index is None:
+        return "solutions change their stability"
+    if event in (Event.UNCHANGED, Event.STABILITY):
+        return what
     # pairs keep the alternating sum of the indices; what comes from infinity need not
     if event is Event.SEVERAL and not (
         before.index and after.index and euler_sum(before.index) == euler_sum(after.index)
@@ -203,15 +197,6 @@ class OperationSpan(Span):
     parts: tuple[CountInterval, ...]
 
 
-def operation_spans(
-    intervals: Iterable[CountInterval], works: Callable[[int], bool]
-) -> tuple[OperationSpan, ...]:
-    """The longest runs of intervals whose number of stable solutions is one that works."""
-    groups = groupby(intervals, lambda i: i.working is not None and works(i.working))
-    members = [list(group) for inside, group in groups if inside]
-    return tuple(OperationSpan(group[0].low, group[-1].high, tuple(group)) for group in members)
-
-
 @with_methods
 @dataclass(frozen=True, slots=True)
 class CountIntervals:
@@ -276,8 +261,12 @@ class CountIntervals:
         """The operation range: where there are so many stable solutions, or of enclosed intervals at
         least so many; of the paper's mechanism two.
         """
-        works = partial(le if self.enclosed else eq, self.working)
-        return operation_spans(self.intervals, works)
+        works = le if self.enclosed else eq
+        groups = groupby(
+            self.intervals, lambda i: i.working is not None and works(self.working, i.working)
+        )
+        members = [tuple(group) for inside, group in groups if inside]
+        return tuple(OperationSpan(group[0].low, group[-1].high, group) for group in members)
 
 
 def lower(end: AnyEnd) -> Fraction:

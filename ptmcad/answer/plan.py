@@ -27,10 +27,9 @@ def saving_step(name: str, without: frozenset[str], what: str = "", why: str = "
     ----------
     what, why : in place of the saving's general words.
     """
-    saving = BY_NAME[name]
-    return PlanStep(
-        what or saving.what, name in without, KEPT if name in without else why or saving.why, name
-    )
+    left_out, reason = BY_NAME[name]
+    kept = name in without
+    return PlanStep(what or left_out, kept, KEPT if kept else why or reason, name)
 
 
 def own_steps(steps: Iterable[PlanStep]) -> list[PlanStep]:

@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 from ptmcad.answer import with_methods
 from ptmcad.answer.regionmap import Status
@@ -61,12 +61,8 @@ _OF_TORSION = (
 _TORSION = "deflection: angle - rest; moment: k sin(deflection), positive where it turns back an angle beyond rest"
 
 
-class NamedNumber(NamedTuple):
-    """A number of a pose by its name, with its unit where that is none of the record's."""
-
-    name: str
-    unit: str
-    value: Enclosure
+NamedNumber = tuple[str, str, Enclosure]
+"""A number of a pose: its name, its unit where that is none of the record's, and the number."""
 
 
 def springs_of(
@@ -170,7 +166,7 @@ class Pose:
         deflections and moments; the same ones for all poses of a model."""
         moving = () if model.whole is None else model.whole.moving
         unknowns = [
-            NamedNumber(name, unit, number)
+            (name, unit, number)
             for unit, names, numbers in (
                 ("rad", model.angles, self.angles),
                 ("deg", model.angles, self.degrees),
@@ -179,18 +175,18 @@ class Pose:
             for name, number in zip(names, numbers, strict=True)
         ]
         nodes = [
-            NamedNumber(f"{name} {axis}", "", x)
+            (f"{name} {axis}", "", x)
             for name, place in self.nodes.items()
             if name in moving
             for axis, x in zip("xy", place, strict=True)
         ]
         springs = [
-            NamedNumber(f"{what} {spring.start}{spring.end}", "", getattr(spring, what))
+            (f"{what} {spring.start}{spring.end}", "", getattr(spring, what))
             for what in ("length", "force")
             for spring in self.springs
         ]
         torsion = [
-            NamedNumber(f"{what} {spring.name}", unit, getattr(spring, field))
+            (f"{what} {spring.name}", unit, getattr(spring, field))
             for what, unit, field in _OF_TORSION
             for spring in self.torsion
         ]

@@ -13,8 +13,6 @@ from functools import partial
 from itertools import pairwise
 from time import perf_counter
 
-from flint import fmpq
-
 from ptmcad.algebra.algebraic_numbers import algebraic_number
 from ptmcad.algebra.real_roots import RealRoot, refine
 from ptmcad.answer.arrangement import correspondence
@@ -33,7 +31,6 @@ from ptmcad.text.enclosure import AlgebraicNumber, Enclosure
 from ptmcad.text.flint_numbers import (
     from_fraction,
     interval_of,
-    simplest_between,
     simplest_fraction,
     to_fraction,
 )
@@ -108,10 +105,35 @@ def changes_of(
         )
     check_count(asked.member(asked.values[0]))
     members = Members(common, options)
-    found = _critical(members)
-    if isinstance(found, str):
-        return _bisected(members, tolerance, found)
-    return _compared(members, found, tolerance)
+    return changes_among(members, _critical(members), tolerance)
+
+
+def changes_among(
+    members: Members, critical: tuple[RealRoot, ...] | str, tolerance: Fraction
+) -> Changes:
+    """The changes among members, with all values at which the arrangement can change, or why these
+    are not known.
+    """
+    found, between, others, reason = (
+        _bisected(members, tolerance, critical)
+        if isinstance(critical, str)
+        else _compared(members, critical, tolerance)
+    )
+    return Changes(
+        members.family.free,
+        tuple(found),
+        tuple(between),
+        tuple(members.at(value).arrangement for value in between),
+        tuple(others),
+        _at_ends(members, tolerance),
+        not isinstance(critical, str),
+        reason,
+        tolerance,
+    )
+
+
+_Found = tuple[list[Change], list[Fraction], list[AlgebraicNumber], str]
+"""The changes, simple values between them, critical values without one, and how this is known."""
 
 
 class Members:
@@ -184,52 +206,39 @@ def _same(a: Picture, b: Picture) -> bool:
     return correspondence(a.arrangement, b.arrangement) is not None
 
 
-def _compared(members: Members, critical: Sequence[RealRoot], tolerance: Fraction) -> Changes:
+def _compared(members: Members, critical: Sequence[RealRoot], tolerance: Fraction) -> _Found:
     """Of all values at which the arrangement can change those at which it does."""
     free = members.family.free
-    roots = [refine(r, from_fraction(tolerance * free.width)) for r in critical]
-    lows = [from_fraction(free.low), *(r.high for r in roots)]
-    highs = [*(r.low for r in roots), from_fraction(free.high)]
+    gap = tolerance * free.width
+    roots = [refine(r, from_fraction(gap)) for r in critical]
+    lows = [free.low, *(to_fraction(r.high) for r in roots)]
+    highs = [*(to_fraction(r.low) for r in roots), free.high]
     pictures = []
-    for done, (low, high) in enumerate(zip(lows, highs, strict=True)):
+    for done, span in enumerate(zip(lows, highs, strict=True)):
         members.report("arrangements", done, len(lows))
-        pictures.append(_typical(members, to_fraction(low), to_fraction(high))[1])
+        pictures.append(_typical(members, *span)[1])
     found: list[Change] = []
     others: list[AlgebraicNumber] = []
     kept = [0]
     for k, root in enumerate(roots):
         number = algebraic_number(root)
-        near = _near(members, root, (lows[k], highs[k + 1]), tolerance)
-        words = _words(members, near, (pictures[k], pictures[k + 1]), number.exact)
+        below = simplest_fraction(max(lows[k], highs[k] - gap), highs[k])
+        above = simplest_fraction(lows[k + 1], min(highs[k + 1], lows[k + 1] + gap))
+        words = _words(members, (below, above), (pictures[k], pictures[k + 1]), number.exact)
         if words:
             found.append(Change(number, words))
             kept.append(k + 1)
         else:
             others.append(number)
-    spans = [
-        (to_fraction(lows[k]), to_fraction(highs[m - 1])) for k, m in pairwise((*kept, len(lows)))
-    ]
-    between = [_typical(members, *_middle(*span)) for span in spans]
-    if not all(_same(picture, pictures[k]) for (_, picture), k in zip(between, kept, strict=True)):
-        raise ArithmeticError("members between two critical values have different arrangements")
-    where = (
-        ""
-        if not roots
-        else " but at one value"
-        if len(roots) == 1
-        else f" but at {len(roots)} values"
-    )
-    return Changes(
-        free,
-        tuple(found),
-        tuple(value for value, _ in between),
-        tuple(picture.arrangement for _, picture in between),
-        tuple(others),
-        _at_ends(members, tolerance),
-        True,
-        f"proved by elimination: within the range nothing can change{where}",
-        tolerance,
-    )
+    between = []
+    for k, m in pairwise((*kept, len(lows))):
+        value, picture = _typical(members, *_middle(lows[k], highs[m - 1]))
+        if not _same(picture, pictures[k]):
+            raise ArithmeticError("members between two critical values have different arrangements")
+        between.append(value)
+    values = {0: "", 1: " but at one value"}.get(len(roots), f" but at {len(roots)} values")
+    reason = f"proved by elimination: within the range nothing can change{values}"
+    return found, between, others, reason
 
 
 def _typical(members: Members, low: Fraction, high: Fraction) -> tuple[Fraction, Picture]:
@@ -258,29 +267,18 @@ def _at_ends(members: Members, tolerance: Fraction) -> tuple[tuple[str, ...], tu
     """What is otherwise at the ends of the range than beside them."""
     free = members.family.free
     gap = tolerance * free.width
-    places = ((free.low, free.low, free.low + gap), (free.high, free.high - gap, free.high))
-    found: list[tuple[str, ...]] = []
-    for end, low, high in places:
-        there, beside = members.tried(end), members.tried(simplest_fraction(low, high))
-        found.append(
-            ()
-            if there is None or beside is None or _same(beside, there)
-            else described(beside, there)
-        )
-    return found[0], found[1]
 
+    def words(end: Fraction, beside: Fraction) -> tuple[str, ...]:
+        there, near = members.tried(end), members.tried(beside)
+        if there is None or near is None or _same(near, there):
+            return ()
+        return described(near, there)
 
-def _near(
-    members: Members, root: RealRoot, around: tuple[fmpq, fmpq], tolerance: Fraction
-) -> tuple[Fraction, Fraction]:
-    """Simple values on both sides of a root, as near as the tolerance says, between the
-    neighbouring ones.
-    """
-    free = members.family.free
-    gap = from_fraction(tolerance * free.width)
-    below = simplest_between(max(around[0], root.low - gap), root.low)
-    above = simplest_between(root.high, min(around[1], root.high + gap))
-    return to_fraction(below), to_fraction(above)
+    low, high = free.low, free.high
+    return (
+        words(low, simplest_fraction(low, low + gap)),
+        words(high, simplest_fraction(high - gap, high)),
+    )
 
 
 def _words(
@@ -307,7 +305,7 @@ def _words(
     return tuple(f"at this value alone: {text}" for text in described(members.at(near[0]), instant))
 
 
-def _bisected(members: Members, tolerance: Fraction, reason: str) -> Changes:
+def _bisected(members: Members, tolerance: Fraction, reason: str) -> _Found:
     """Changes between members that differ, enclosed."""
     free = members.family.free
     inner = {free.middle(k, SAMPLES) for k in range(SAMPLES)}
@@ -325,19 +323,8 @@ def _bisected(members: Members, tolerance: Fraction, reason: str) -> Changes:
         found.append(Change(Enclosure(low, high), described(members.at(low), members.at(high))))
         place = high
     between.append(_simple_alike(members, place, values[-1]))
-    arrangements = tuple(members.at(value).arrangement for value in between)
     words = f"found by sampling {len(values)} members, not proved complete: {reason}"
-    return Changes(
-        free,
-        tuple(found),
-        tuple(between),
-        arrangements,
-        (),
-        _at_ends(members, tolerance),
-        False,
-        words,
-        tolerance,
-    )
+    return found, between, [], words
 
 
 def _simple_alike(members: Members, low: Fraction, high: Fraction) -> Fraction:

@@ -147,10 +147,9 @@ def check(slice: Slice, sized: bool = True) -> CheckedSlice:
                 f"no map can be made, since {error.message}: ask for single points, by ptmcad solve"
             )
         return CheckedSlice(slice, at, None, "certified", f"{cost}; {flat}" if flat else cost)
-    if len(slice.model.unknowns) > MAX_UNKNOWNS:
-        return CheckedSlice(slice, at, None, "exact", _UNCOUNTED)
-    found, bound = _counted(slice, at, sized)
-    return replace(found, bases=plan_text(bound))
+    uncounted = CheckedSlice(slice, at, None, "exact", _UNCOUNTED)
+    many = len(slice.model.unknowns) > MAX_UNKNOWNS
+    return uncounted if many else _counted(uncounted, sized)
 
 
 _ACROSS, _UP = Fraction(10, 21), Fraction(19, 35)
@@ -196,44 +195,40 @@ def _check_bounded(slice: Slice) -> None:
         ranges(branch, slice.axes)
 
 
-def _counted(
-    slice: Slice, sample: tuple[Fraction, Fraction], sized: bool
-) -> tuple[CheckedSlice, int]:
-    """The check of a slice that the exact engine takes, and the bound for its solutions by Bezout's
-    theorem.
-    """
-    problem = problem_of(slice)
-    values = problem.on.values((from_fraction(sample[0]), from_fraction(sample[1])))
+def _counted(asked: CheckedSlice, sized: bool) -> CheckedSlice:
+    """The check of a slice that the exact engine takes."""
+    slice, problem = asked.slice, problem_of(asked.slice)
+    x, y = map(from_fraction, asked.sample)
+    values = problem.on.values((x, y))
     degree, bound = degree_bound(problem.system, values)
+    asked = replace(asked, bases=plan_text(bound))
     if degree > MAX_DEGREE or bound > MAX_BOUND:
-        return CheckedSlice(slice, sample, None, "exact", _UNCOUNTED, bound), bound
+        return replace(asked, bound=bound)
     others = (problem.on.values(at) for at in points(problem.window))
     try:
         found, doubt = _solutions(problem.system, values)
         everywhere = bool(doubt) and all(_solutions(problem.system, other)[1] for other in others)
     except LimitReached:
-        return CheckedSlice(slice, sample, None, "exact", _UNCOUNTED, bound), bound
+        return replace(asked, bound=bound)
     if everywhere:
         seen = f"at {len(SHARES)} points that were tried {doubt}"
         if (found or 0) > MAX_PROVED:
             refused = f"not known: {seen}; a slice where that is so everywhere is refused"
-            return CheckedSlice(slice, sample, found, "exact", refused), bound
+            return replace(asked, complex_solutions=found, cost=refused)
         if not returns_within(MAX_SECONDS, _prove, slice):
             late = (
                 "; that it is so everywhere, where the slice is refused, was not proved in the time"
             )
-            return CheckedSlice(slice, sample, found, "exact", f"not known: {seen}{late}"), bound
+            return replace(asked, complex_solutions=found, cost=f"not known: {seen}{late}")
     if not found:
-        return CheckedSlice(
-            slice, sample, None, "exact", f"not known: at the sample {doubt}"
-        ), bound
+        return replace(asked, cost=f"not known: at the sample {doubt}")
     foretold = _foretold(problem, found) if not doubt and (sized or found > _LONG) else None
     words = _UNSIZED if foretold is None else in_figures(foretold)
     far = found > _LONG if foretold is None else not foretold.reachable
     if far and foretold is not None:
         words += f"; {OUT_OF_REACH}"
     offered = _BY_INTERVALS if far and _encloses(slice) else ""
-    return CheckedSlice(slice, sample, found, "exact", words + offered, forecast=foretold), bound
+    return replace(asked, complex_solutions=found, cost=words + offered, forecast=foretold)
 
 
 def _foretold(problem: SliceProblem, solutions: int) -> Forecast | None:

@@ -140,8 +140,10 @@ def region_map(slice: Slice, options: Options, known: Known | None = None) -> Re
     """
     check_count(slice)
     certified = is_certified(slice, options.engine)
-    if not options.areas:
-        _check_no_areas(options)
+    if not options.areas and options.area_tolerance is not None:
+        raise ConfigError(
+            "areas are not asked for, but a tolerance for them is given: leave one out", key="areas"
+        )
     options = replace(options, without=switched_off(options.without, certified))
     if certified:
         _check_certified(slice, options)
@@ -166,13 +168,6 @@ def region_map(slice: Slice, options: Options, known: Known | None = None) -> Re
     from ptmcad.exact.exactmap import exact_map
 
     return exact_map(slice, options, known)
-
-
-def _check_no_areas(options: Options) -> None:
-    if options.area_tolerance is not None:
-        raise ConfigError(
-            "areas are not asked for, but a tolerance for them is given: leave one out", key="areas"
-        )
 
 
 def prepare(slice: Slice, options: Options) -> float:

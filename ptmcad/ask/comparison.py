@@ -7,20 +7,18 @@ map's own. Certified maps have no curves: see `ptmcad.ask.coverdifference`.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Callable, Hashable, Iterable, Sequence
 from dataclasses import replace
 from fractions import Fraction
-from typing import Any
+from typing import Any, TypeVar
 
-from ptmcad.answer.comparison import Change, Comparison
+from ptmcad.answer.comparison import Bounds, Change, Comparison
 from ptmcad.answer.counts import counted_by
 from ptmcad.answer.regionmap import HARMLESS, Cell, Component, Region, RegionMap, Status
 from ptmcad.ask.location import locate
-from ptmcad.cover.rectangles import Cover
 from ptmcad.errors import A_MAP, ConfigError, expect
 from ptmcad.exact.cad.area import region_areas
-from ptmcad.exact.decomposition import Decomposition, cut_along, members, seen_from
+from ptmcad.exact.decomposition import cut_along, members, seen_from
 from ptmcad.exact.mapassembly import critical_values_of, stacks_of_cells
 from ptmcad.exact.regionareas import region_stacks
 from ptmcad.question.counts import Count
@@ -29,6 +27,7 @@ from ptmcad.text.flint_numbers import interval_of
 
 TOLERANCE = Fraction(1, 10**6)
 """Relative width of the areas' bounds."""
+_Answer = TypeVar("_Answer")
 
 
 def compare(first: RegionMap, second: RegionMap, tolerance: Fraction = TOLERANCE) -> Comparison:
@@ -43,61 +42,116 @@ def compare(first: RegionMap, second: RegionMap, tolerance: Fraction = TOLERANCE
     """
     expect(second, RegionMap, "other", A_MAP)
     _check(first, second)
-    if first.cover is not None and second.cover is not None:
-        return _certified(first, first.cover, second, second.cover)
-    components = _union([c for m in (first, second) for c in m.components if c.separates])
+    return (_exact if first.cover is None else _certified)((first, second), tolerance)
+
+
+_Maps = tuple[RegionMap, RegionMap]
+_Pairs = Sequence[tuple[int, ...]]
+"""For each cell of the decomposition the regions of both maps that hold it."""
+
+
+def _exact(maps: _Maps, tolerance: Fraction) -> Comparison:
+    components = _union([c for m in maps for c in m.components if c.separates])
     # at a sample both maps have to say what they count there
-    others = [
-        c._replace(left_out=HARMLESS)
-        for m in (first, second)
-        for c in m.components
-        if not c.separates
-    ]
-    x, y = map(interval_of, first.slice.axes)
+    others = [c._replace(left_out=HARMLESS) for m in maps for c in m.components if not c.separates]
+    slice = maps[0].slice
+    x, y = map(interval_of, slice.axes)
     cut = cut_along((x, y), seen_from([*components, *_union(others)]))
-    points, count = cut.samples(first.slice.axis_names), first.slice.count
-    with _asked("first"):
-        befores = [_region(first, at) for at in points]
-        olds = [counted_by(first.regions[a], count) for a in befores]
-    with _asked("second"):
-        afters = [_region(second, at) for at in points]
-        news = [counted_by(second.regions[b], count) for b in afters]
-    pairs = list(zip(befores, afters, strict=True))
-    keys = list(zip(olds, news, strict=True))
-    numbers = {key: n for n, key in enumerate(dict.fromkeys(keys))}
-    of_cell = [numbers[key] for key in keys]
+    points = cut.samples(slice.axis_names)
+    regions = _of_each(maps, lambda result: [_region(result, at) for at in points])
+    pairs = list(zip(*regions, strict=True))
+    of_cell = _numbered(_counts(maps, pairs))
     bounds, _ = region_areas(region_stacks(cut, of_cell), tolerance)
+    return _comparison(
+        maps, pairs, bounds, cut.places, points,
+        base=cut.variety.base, components=tuple(components),
+        critical_values=critical_values_of(cut.projection), stacks=stacks_of_cells(cut),
+        adjacencies=(), non_adjacencies=(),
+    )  # fmt: skip
+
+
+def _certified(maps: _Maps, _tolerance: Fraction) -> Comparison:
+    from ptmcad.ask.coverdifference import bounds_of, overlaid, points_in, side  # brings numpy
+
+    sides = _of_each(maps, side)
+    complement, held = overlaid(*sides)
+    pairs = list(held.values())
+    counts = dict(zip(held, _counts(maps, pairs), strict=True))
+    places = [(None, k) for k in range(len(held))]
+    return _comparison(
+        maps, pairs, bounds_of(maps, sides, complement, counts), places,
+        points_in(maps[0].slice, complement, held),
+        undetermined=1 - Fraction(sum(complement.areas[n] for n in held), complement.cover.steps**2),
+        cover=complement.cover,
+    )  # fmt: skip
+
+
+def _counts(maps: _Maps, pairs: _Pairs) -> list[tuple[tuple[int, ...], ...]]:
+    """The counts of both maps for each cell."""
+    count = maps[0].slice.count
+    return [
+        tuple(counted_by(m.regions[r], count) for m, r in zip(maps, pair, strict=True))
+        for pair in pairs
+    ]
+
+
+def _numbered(counts: Sequence[Hashable]) -> list[int]:
+    numbers = {pair: n for n, pair in enumerate(dict.fromkeys(counts))}
+    return [numbers[pair] for pair in counts]
+
+
+def _comparison(
+    maps: _Maps,
+    pairs: _Pairs,
+    bounds: Sequence[Bounds],
+    places: Iterable[tuple[int | None, int]],
+    points: Sequence[Point],
+    **parts: Any,
+) -> Comparison:
+    """The changes, and the decomposition in the form that pictures read.
+
+    Parameters
+    ----------
+    bounds : of the area of each pair of counts, in the order of their first cells.
+    places : stack and level of each cell.
+    parts : of the decomposition, in place of the first map's.
+    """
+    first, second = maps
+    counts = _counts(maps, pairs)
+    of_cell = _numbered(counts)
+    cells = tuple(
+        Cell(stack, level, at, region, None, None, None)
+        for (stack, level), at, region in zip(places, points, of_cell, strict=True)
+    )
+    groups = zip(bounds, members(of_cell) if of_cell else (), strict=True)
+    regions = tuple(Region(None, None, None, area, own, points[own[0]]) for area, own in groups)
     changes = []
-    for key, number in numbers.items():
-        before, after = pairs[of_cell.index(number)]
-        if key[0] != key[1]:
-            changes.append(Change(before, after, number, bounds[number]))
-    decomposition = _as_map(first, components, cut, points, (of_cell, bounds))
+    for number, region in enumerate(regions):
+        before, after = pairs[region.cells[0]]
+        if len(set(counts[region.cells[0]])) > 1:
+            changes.append(Change(before, after, number, region.area))
+    found = replace(first, cells=cells, regions=regions, plan=(), **parts)
     return Comparison(
-        first, second, decomposition, tuple(sorted(changes, key=lambda c: -c.area[0]))
+        first,
+        second,
+        found,
+        tuple(sorted(changes, key=lambda c: -c.area[0])),
+        None if first.cover is None else first.slice.area * found.undetermined,
     )
 
 
-def _certified(first: RegionMap, one: Cover, second: RegionMap, other: Cover) -> Comparison:
-    from ptmcad.ask.coverdifference import cover_difference, side  # brings numpy
-
-    with _asked("first"):
-        before = side(first, one)
-    with _asked("second"):
-        after = side(second, other)
-    return cover_difference(before, after)
-
-
-@contextmanager
-def _asked(which: str) -> Iterator[None]:
-    """What is asked of one of the maps: where it contradicts itself, the error's key says of which."""
-    try:
-        yield
-    except ConfigError as error:
-        raise ConfigError(error.message, key=which) from error
-    except (ValueError, IndexError, ArithmeticError) as error:
-        reason = f"the map contradicts itself ({error}); check it with ptmcad verify"
-        raise ConfigError(reason, key=which) from error
+def _of_each(maps: _Maps, answer: Callable[[RegionMap], _Answer]) -> list[_Answer]:
+    """What is asked of both maps: where one contradicts itself, the error's key says which."""
+    found = []
+    for which, result in zip(("first", "second"), maps, strict=True):
+        try:
+            found.append(answer(result))
+        except ConfigError as error:
+            raise ConfigError(error.message, key=which) from error
+        except (ValueError, IndexError, ArithmeticError) as error:
+            reason = f"the map contradicts itself ({error}); check it with ptmcad verify"
+            raise ConfigError(reason, key=which) from error
+    return found
 
 
 def _check(first: RegionMap, second: RegionMap) -> None:
@@ -134,38 +188,8 @@ def _union(components: Sequence[Component]) -> list[Component]:
 
 def _region(result: RegionMap, at: Point) -> int:
     found = locate(result, {name: at[name] for name in at.names}).region
-    if found is None:
+    if found is None or found >= len(result.regions):
         raise ConfigError(
             f"the map {result.slice.name} contradicts itself; check it with ptmcad verify"
         )
     return found
-
-
-def _as_map(
-    first: RegionMap,
-    components: Sequence[Component],
-    cut: Decomposition,
-    points: Sequence[Point],
-    found: tuple[Sequence[int], Sequence[tuple[Fraction, Fraction]]],
-) -> RegionMap:
-    """The decomposition in the form that pictures read."""
-    of_cell, bounds = found
-    cells = tuple(
-        Cell(s, level, at, region, None, None, None)
-        for (s, level), at, region in zip(cut.places, points, of_cell, strict=True)
-    )
-    return replace(
-        first,
-        base=cut.variety.base,
-        components=tuple(components),
-        critical_values=critical_values_of(cut.projection),
-        stacks=stacks_of_cells(cut),
-        cells=cells,
-        adjacencies=(),
-        non_adjacencies=(),
-        regions=tuple(
-            Region(None, None, None, area, numbers, points[numbers[0]])
-            for area, numbers in zip(bounds, members(of_cell), strict=True)
-        ),
-        plan=(),
-    )

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from ptmcad.exact.models.system import SystemOnAxes
 
 
-class FamilyOfMaps(NamedTuple):
+class _FamilyOfMaps(NamedTuple):
     """A family as a question, read off its maps."""
 
     free: Axis
@@ -38,10 +38,10 @@ class FamilyOfMaps(NamedTuple):
     member: Callable[[Fraction], Slice]
 
 
-AskedFamily = Family | FamilyOfMaps
+AskedFamily = Family | _FamilyOfMaps
 
 
-def restored(maps: FamilyMap) -> FamilyOfMaps:
+def restored(maps: FamilyMap) -> _FamilyOfMaps:
     """The family whose maps are given.
 
     A member is a `ConfigError` when the maps do not say of what the family's parameters are made,
@@ -57,7 +57,7 @@ def restored(maps: FamilyMap) -> FamilyOfMaps:
                 f"{error.message} (at {maps.free.name} = {text_of(value)})"
             ) from error
 
-    return FamilyOfMaps(maps.free, maps.values, maps.axes, maps.text, slice.model, member)
+    return _FamilyOfMaps(maps.free, maps.values, maps.axes, maps.text, slice.model, member)
 
 
 class Common(NamedTuple):

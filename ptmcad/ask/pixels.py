@@ -6,7 +6,6 @@ from signs of its polynomial at centres; a certified map's pixels from its cover
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from fractions import Fraction
 
 import numpy as np
@@ -15,8 +14,8 @@ from numpy.typing import NDArray
 
 from ptmcad.algebra.real_roots import RealRoot, sign_at
 from ptmcad.answer.boundaries import NONE, Grid
-from ptmcad.answer.regionmap import Cell, RegionMap
-from ptmcad.ask.location import component_cells, in_steps, locate, stack_over
+from ptmcad.answer.regionmap import RegionMap
+from ptmcad.ask.location import component_cells, locate, stack_over
 from ptmcad.cover.rectangles import Cover
 from ptmcad.cover.subdivision import FREE
 from ptmcad.errors import ConfigError
@@ -70,15 +69,13 @@ def grid(result: RegionMap, columns: int = 200, rows: int | None = None) -> Grid
         y,
         result.slice.axis_names,
         cells,
-        _of(result, cells, lambda c: c.region),
-        _of(result, cells, lambda c: c.stable),
-        _of(result, cells, lambda c: c.total),
+        *(_of(result, cells, name) for name in ("region", "stable", "total")),
     )
 
 
-def _of(result: RegionMap, cells: Labels, value: Callable[[Cell], int | None]) -> Labels:
+def _of(result: RegionMap, cells: Labels, name: str) -> Labels:
     """What the cells say, at their pixels."""
-    known = [value(cell) for cell in result.cells]
+    known = [getattr(cell, name) for cell in result.cells]
     table = np.array([*(NONE if v is None else v for v in known), NONE], dtype=np.int64)
     return table[cells]  # the label `NONE` is the last entry
 
@@ -96,11 +93,9 @@ def _exact(result: RegionMap, centres: list[list[Fraction]]) -> Labels:
             continue  # the whole column is on a curve
         number, on_critical = stack_over(result, u)
         if on_critical:
+            names = result.slice.axis_names
             for row, v in enumerate(centres[1 - base]):
-                cell = locate(
-                    result,
-                    dict(zip(result.slice.axis_names, (at, v)[:: 1 - 2 * base], strict=True)),
-                ).cell
+                cell = locate(result, {names[base]: at, names[1 - base]: v}).cell
                 image[k, row] = NONE if cell is None else cell
             continue
         stack = result.stacks[number]
@@ -144,13 +139,8 @@ def _certified(result: RegionMap, cover: Cover, centres: list[list[Fraction]]) -
         if component is not None:
             number_of[component] = cell
     places = [
-        [in_steps(result, cover, point)[k] for point in points]
-        for k, points in enumerate(
-            (
-                [(x, centres[1][0]) for x in centres[0]],
-                [(centres[0][0], y) for y in centres[1]],
-            )
-        )
+        [axis.share(v) * cover.steps for v in values]
+        for axis, values in zip(result.slice.axes, centres, strict=True)
     ]
     tree = complement.subdivision
     whole = [np.array([int(p) for p in values], dtype=np.int64) for values in places]

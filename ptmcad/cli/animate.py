@@ -66,9 +66,7 @@ MAX_FPS = 60
 @tolerance_option
 @out_option
 @name_option("NAME-motion")
-@format_option(
-    FORMATS, f"Files to write, of {', '.join(FORMATS)}; mp4 needs the program ffmpeg.", "gif"
-)
+@format_option(FORMATS, "Files to write, of {}; mp4 needs the program ffmpeg.", "gif")
 @limit_options
 @gathered(style=(("size", "palette", "title"), partial(style_of, style="default")))
 def command(

@@ -14,7 +14,7 @@ from ptmcad.cli.drawing import report_written
 from ptmcad.cli.limits import seconds_of
 from ptmcad.cli.progress import ProgressBar
 from ptmcad.errors import ConfigError
-from ptmcad.extras import Extra, require
+from ptmcad.extras import require
 from ptmcad.process.output import check_writable
 from ptmcad.question.config import load
 from ptmcad.question.shipped import record_file
@@ -77,7 +77,7 @@ def command(
             raise ConfigError("measures nothing, so it takes no CONFIG", key="--compare")
         return _compare(*compare)
     slices = _slices(configs)
-    for extra in (Extra.bench, Extra.data):
+    for extra in ("bench", "data"):
         require(extra, key="bench")
     from ptmcad.studies.bench.study import RIVALS, measure
     from ptmcad.studies.bench.studyreport import PAGE, SUFFIXES, save, save_page, terminal
@@ -118,7 +118,7 @@ def _slices(configs: tuple[Path, ...]) -> list[tuple[Slice, Path]]:
 
 
 def _compare(old: Path, new: Path) -> int:
-    require(Extra.data, key="bench")
+    require("data", key="bench")
     from ptmcad.studies.bench.stored import BAD, compare, comparison_table, read_study
 
     changes = compare(read_study(old), read_study(new))

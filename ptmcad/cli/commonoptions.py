@@ -98,8 +98,13 @@ Formats = tuple[str, ...]
 """Kinds of output."""
 
 
-def format_option(known: Formats, help: str, default: str | None = None) -> Callable[[F], F]:
-    """Add ``--format``, of which the command gets the kinds as ``formats``."""
+def format_option(
+    known: Formats, help: str = "Files to write, of {}.", default: str | None = None
+) -> Callable[[F], F]:
+    """Add ``--format``, of which the command gets the kinds as ``formats``; braces in the help stand
+    for those that are known.
+    """
+    help = help.format(", ".join(known)) + "  [default: none]" * (default is None)
     kinds = reading(lambda _, text: _kinds(text, known), absent=())
     return click.option(
         "--format", "formats", callback=kinds, shell_complete=completed(known),

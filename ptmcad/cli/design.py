@@ -73,7 +73,7 @@ CONDITIONS = ("stable", "tension", "conditions")
               help="Boxes of designs that the proof may take.")  # fmt: skip
 @out_option
 @name_option("NAME-design")
-@format_option(FORMATS, f"Files to write, of {', '.join(FORMATS)}.  [default: none]")
+@format_option(FORMATS)
 @limit_options
 @gathered(where=(CONDITIONS, dict), asked=(QUESTION, dict))
 def command(

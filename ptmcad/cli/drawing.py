@@ -145,6 +145,9 @@ def names_of(stem: str, formats: Formats) -> tuple[str, ...]:
     )
 
 
+_DRAWING = ("samples", "style", "dpi", "boundary_tolerance", "pixels")
+
+
 class DrawingOptions(NamedTuple):
     """How a map is drawn and tabulated.
 
@@ -238,17 +241,6 @@ def _pixels(key: str, value: str) -> tuple[int, int]:
 pixels_of = reading(_pixels)
 
 
-def _drawing(
-    samples: bool,
-    dpi: int,
-    boundary_tolerance: Fraction,
-    pixels: tuple[int, int],
-    style: PictureStyle,
-) -> DrawingOptions:
-    """The options together."""
-    return DrawingOptions(samples, style, dpi, boundary_tolerance, pixels)
-
-
 def style_of(*, style: str, **options: Any) -> PictureStyle:
     """The options of a style together."""
     try:
@@ -303,7 +295,7 @@ def drawing_options(known: Formats, default: str, what: str) -> Callable[[F], F]
     """
 
     def decorate(command: F) -> F:
-        command = style_options(gathered(drawing=_drawing)(command))
+        command = style_options(gathered(drawing=(_DRAWING, DrawingOptions))(command))
         for option in (
             click.option("--pixels", callback=pixels_of, default="400x400", show_default=True, metavar="NxM",
                          help="Columns and rows of the grid of exact counts in an NPZ."),
@@ -311,7 +303,7 @@ def drawing_options(known: Formats, default: str, what: str) -> Callable[[F], F]
                          metavar="EPS", help="How far boundaries in CSV and NPZ may be from the true curves, as a "
                                              "share of the window's side."),
             click.option("--samples", is_flag=True, help="Draw the cells' sample points."),
-            format_option(known, f"{what}, of {', '.join(known)}.", default),
+            format_option(known, what + ", of {}.", default),
         ):  # fmt: skip
             command = option(command)
         return command

@@ -13,7 +13,7 @@ import click
 from ptmcad.cli.commonoptions import out_option
 from ptmcad.cli.limits import ResourceLimits, held, limit_options
 from ptmcad.cli.slices import slice_options
-from ptmcad.extras import Extra, require
+from ptmcad.extras import require
 from ptmcad.process.handover import Topic, send
 from ptmcad.question.config import record_from_options
 from ptmcad.question.config.typed import Typed
@@ -58,7 +58,7 @@ def command(
         ptmcad explore fig4 --slider k=50:200 --open
         ptmcad explore --slice rho,L2 --set F3=F --set F4=F --free F=-40:0
     """
-    require(Extra.explore)
+    require("explore")
     record = record_from_options(asked._replace(free=free))
     with held(limits):
         from ptmcad.workbench.explore.panel import panel_of

@@ -49,7 +49,7 @@ def bound_of(text: str) -> Bound:
 
     Examples
     --------
-    >>> bound_of("500M").size, bound_of("1.5 GiB").size
+    >>> bound_of("500M")[0], bound_of("1.5 GiB")[0]
     (524288000, 1610612736)
     """
     match = _SIZE.fullmatch(text.strip())
@@ -66,7 +66,7 @@ def bound_of(text: str) -> Bound:
         )
     if size >= 1 << 60:
         raise ConfigError(f"{shown} is more than any machine has", key="--max-memory")
-    return Bound(size, text.strip())
+    return size, text.strip()
 
 
 def default_bound() -> Bound:
@@ -83,8 +83,9 @@ def default_bound() -> Bound:
         [(machine, "machine"), *((int(text), "container") for text in texts if text.isdigit())]
     )
     size = least * 9 // 10
-    return Bound(
-        size, f"{size / (1 << 30):.3g}G, nine tenths of this {whose}'s (--max-memory sets another),"
+    return (
+        size,
+        f"{size / (1 << 30):.3g}G, nine tenths of this {whose}'s (--max-memory sets another),",
     )
 
 
@@ -141,6 +142,6 @@ def held(limits: ResourceLimits) -> Iterator[None]:
     # no faster on several
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
     if bound is not None:
-        send(Topic.MEMORY, str(bound.size), bound.text)
+        send(Topic.MEMORY, str(bound[0]), bound[1])
     with nullcontext() if bound is None else bounded(bound):
         yield

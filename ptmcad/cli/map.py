@@ -38,10 +38,6 @@ said.
 """
 
 
-class DifferenceError(PtmcadError):
-    """Values that do not agree with exact poses."""
-
-
 @click.command("map")
 @slice_options
 @click.option("--value", default="energy", show_default=True, metavar="QUANTITY", shell_complete=quantity_names,
@@ -59,7 +55,7 @@ class DifferenceError(PtmcadError):
 @tolerance_option
 @style_options
 @out_option
-@format_option(FORMATS, f"Files to write, of {', '.join(FORMATS)}.", "png")
+@format_option(FORMATS, default="png")
 @limit_options
 def command(
     *,
@@ -151,7 +147,7 @@ def _report(field: Field) -> None:
             err=True,
         )
     if field.checked and not field.difference <= MAX_DIFFERENCE:
-        raise DifferenceError(
+        raise PtmcadError(
             f"{field.checked} pixels were compared with exact poses, and one differs by {field.difference:.2g} of the "
             "largest value: do not trust this map"
         )

@@ -39,7 +39,7 @@ from ptmcad.cli.limits import ResourceLimits, held, limit_options
 from ptmcad.cli.locate import point_of, rows_of
 from ptmcad.cli.progress import ProgressBar
 from ptmcad.cli.storedresults import kind_of, read_result, stored_in
-from ptmcad.errors import ConfigError, ExpressionError, blamed, shown, shown_path
+from ptmcad.errors import ConfigError, blamed, shown, shown_path
 from ptmcad.process.output import Writer, check_writable, write_files
 from ptmcad.question.config import point_from_mapping, portable_file
 from ptmcad.question.counts import Shades
@@ -47,7 +47,7 @@ from ptmcad.show import render
 from ptmcad.show.style import LegendPlace
 from ptmcad.show.table import count_text, index_text
 from ptmcad.text.numerals import equalities, shortest_text
-from ptmcad.text.parsing import rational
+from ptmcad.text.parsing import number_for
 
 if TYPE_CHECKING:
     from ptmcad.show.render.overlay import Agreement, Measured
@@ -181,10 +181,7 @@ def _agreement(result: RegionMap, at: Place, count: str) -> Agreement:
 
 
 def _numbers(result: RegionMap, point: Mapping[str, str], key: str | None) -> Place:
-    try:
-        first, second = (rational(point[name]) for name in result.slice.axis_names)
-    except ExpressionError as error:
-        raise ConfigError(str(error), key=key) from error
+    first, second = (number_for(key, point[name]) for name in result.slice.axis_names)
     return first, second
 
 
@@ -194,7 +191,7 @@ def _inside(result: RegionMap, at: Place) -> bool:
     )
 
 
-class Added(NamedTuple):
+class _Added(NamedTuple):
     """What is drawn beside the map itself."""
 
     overlay: Path | None
@@ -203,7 +200,7 @@ class Added(NamedTuple):
     surface: bool
 
 
-def _with_points(stored: RegionMap, drawing: DrawingOptions, added: Added) -> DrawingOptions:
+def _with_points(stored: RegionMap, drawing: DrawingOptions, added: _Added) -> DrawingOptions:
     """The drawing with measured points, and with the poses at points; both are checked before poses
     are computed.
     """
@@ -221,7 +218,7 @@ def _with_points(stored: RegionMap, drawing: DrawingOptions, added: Added) -> Dr
     return drawing._replace(poses=tuple((place, poses_at(stored, place)) for place in chosen))
 
 
-def _idle(result: Path, drawing: DrawingOptions, added: Added) -> tuple[Idle, ...]:
+def _idle(result: Path, drawing: DrawingOptions, added: _Added) -> tuple[Idle, ...]:
     """Options that a picture of more than a map does not heed."""
     several = added.compare is not None or kind_of(result) == "family"
     below = several and drawing.style.legend is LegendPlace.RIGHT
@@ -232,7 +229,7 @@ def _idle(result: Path, drawing: DrawingOptions, added: Added) -> tuple[Idle, ..
     )
 
 
-def _check_compared(added: Added, formats: Formats) -> None:
+def _check_compared(added: _Added, formats: Formats) -> None:
     if added.compare is None:
         return
     if added.at or added.overlay is not None:
@@ -285,9 +282,9 @@ def _compared(
 
 
 def _plot_family(
-    result: Path, folder: Path, formats: Formats, drawing: DrawingOptions, added: Added
+    result: Path, folder: Path, formats: Formats, drawing: DrawingOptions, added: _Added
 ) -> None:
-    if added._replace(surface=False) != Added(None, (), None, False):
+    if added._replace(surface=False) != _Added(None, (), None, False):
         raise ConfigError(
             "points and comparisons are for one map: give a member's file", file=str(result)
         )
@@ -343,14 +340,14 @@ def _surface(family: FamilyMap, file: Path) -> BoundarySurface:
     help="Of a family with its changes: draw NAME-3d as the surface between regions of different counts.",
 )  # fmt: skip
 @limit_options
-@gathered(added=Added)
+@gathered(added=_Added)
 def command(
     *,
     result: Path,
     out: Path | None,
     formats: Formats,
     drawing: DrawingOptions,
-    added: Added,
+    added: _Added,
     limits: ResourceLimits,
 ) -> None:
     """Draw RESULT, a JSON file of `ptmcad classify`, or write it as numbers.

@@ -4,8 +4,7 @@ stable poses snap.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from fractions import Fraction
+from collections.abc import Collection, Mapping
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -28,16 +27,16 @@ from ptmcad.cli.drawing import report_written, write_answer
 from ptmcad.cli.limits import ResourceLimits, compile_certified, held, limit_options
 from ptmcad.cli.locate import point_of
 from ptmcad.cli.progress import ProgressBar
-from ptmcad.cli.range_answers import RangeAnswer, RangeRequest, answer, is_enclosed, request_codec
-from ptmcad.cli.slices import range_option, set_option, typed_line
-from ptmcad.errors import ConfigError, ExpressionError
+from ptmcad.cli.range_answers import RangeRequest, answer, is_enclosed, request_codec
+from ptmcad.cli.slices import LINE, range_option, set_option
+from ptmcad.errors import ConfigError
 from ptmcad.model import ptm
 from ptmcad.process.output import check_writable
 from ptmcad.question.config import file_name, names_in_record, slice_from_options
 from ptmcad.question.config.typed import Typed
 from ptmcad.question.shipped import FIRST, SECOND
 from ptmcad.question.slice import Slice
-from ptmcad.text.parsing import rational
+from ptmcad.text.parsing import number_for
 
 FORMATS = ("json", "png", "svg", "pdf")
 
@@ -60,8 +59,18 @@ def slice_and_line(
     ConfigError
         For anything wrong with the record or the options.
     """
-    given = _axes(asked)
-    other = _other_axis(along, given, at) if over is None else over
+    known: Collection[str] = ptm().parameters
+    given: tuple[str, ...] = ()  # the axes before the options of the line are looked at
+    if asked.config is not None:
+        given, known = names_in_record(asked.config)
+    if asked.slice is not None:
+        given = tuple(name.strip() for name in asked.slice.split(","))
+    if over is not None:
+        other = over
+    elif along in given:
+        other = given[1 - given.index(along)]
+    else:
+        other = next((n for n in (*given, *at) if n in at), "")
     if not other:
         raise ConfigError(
             f"give the values at which {along} varies, as in {SECOND if along == FIRST else FIRST}=3/2",
@@ -72,7 +81,6 @@ def slice_and_line(
     if over is None and other not in at:
         raise ConfigError(f"the other axis, {other}, has no value: add {other}=VALUE", key="--at")
     fixed = tuple(f"{name}={value}" for name, value in at.items() if name != other)
-    known = ptm().parameters if asked.config is None else names_in_record(asked.config)[1]
     for name in at:
         if name != other and name not in known:
             raise ConfigError(f"'{name}' is neither an axis nor a parameter", key="--at")
@@ -89,20 +97,6 @@ def slice_and_line(
     return slice, {other: at[other]} if other in at else {}
 
 
-def _other_axis(along: str, given: tuple[str, ...], at: Mapping[str, str]) -> str:
-    """The name of the axis that does not vary along the line; empty when nothing says which."""
-    if along in given:
-        return given[1 - given.index(along)]
-    return next((n for n in given if n in at), next(iter(at), ""))
-
-
-def _axes(asked: Typed) -> tuple[str, ...]:
-    """The axes' names before the options of the line are looked at."""
-    if asked.slice is not None:
-        return tuple(name.strip() for name in asked.slice.split(","))
-    return () if asked.config is None else names_in_record(asked.config)[0]
-
-
 def request_of(along: str, at: Mapping[str, str], **asked: Any) -> RangeRequest:
     """What is asked of the line, checked.
 
@@ -117,12 +111,14 @@ def request_of(along: str, at: Mapping[str, str], **asked: Any) -> RangeRequest:
         For an option that needs another one.
     """
     over, quantities = asked["over"] is not None, tuple(dict.fromkeys(asked["quantities"]))
-    path = {"over": over, "start": _start(asked["start"], at), "quantities": quantities}
+    for key, given in (("--path", asked["start"]), ("--quantity", quantities or None)):
+        if given is not None and not at:
+            raise ConfigError(
+                f"needs the value of the other axis too, as in --at {SECOND}=3/2", key=key
+            )
+    start = None if asked["start"] is None else number_for("--path", asked["start"])
+    path = {"over": over, "start": start, "quantities": quantities}
     request = RangeRequest(along=along, at=at, **{**asked, **path})
-    if quantities and not at:
-        raise ConfigError(
-            f"needs the value of the other axis too, as in --at {SECOND}=3/2", key="--quantity"
-        )
     if (
         not over
         and click.get_current_context().get_parameter_source("rows") is not ParameterSource.DEFAULT
@@ -153,7 +149,6 @@ def request_of(along: str, at: Mapping[str, str], **asked: Any) -> RangeRequest:
 )
 @click.option(
     "--slice",
-    "axes",
     metavar="X,Y",
     shell_complete=pair_of_names,
     help="The slice's two axes, where a name is no parameter.",
@@ -169,7 +164,7 @@ def request_of(along: str, at: Mapping[str, str], **asked: Any) -> RangeRequest:
 )
 @out_option
 @name_option("NAME-range")
-@format_option(FORMATS, f"Files to write, of {', '.join(FORMATS)}.  [default: none]")
+@format_option(FORMATS)
 @click.option(
     "--over",
     metavar="NAME",
@@ -193,7 +188,7 @@ def request_of(along: str, at: Mapping[str, str], **asked: Any) -> RangeRequest:
                    "eigenvalue), force:SPRING, length:SPRING, angle:UNKNOWN, x:POINT or y:POINT. "
                    "Repeatable.")  # fmt: skip
 @limit_options
-@gathered(typed=typed_line, asked=(REQUEST, dict))
+@gathered(typed=(LINE, Typed), asked=(REQUEST, dict))
 def command(
     *,
     typed: Typed,
@@ -239,22 +234,25 @@ def command(
             if enclosed:
                 compile_certified(limits.timeout, progress)
             progress("intervals ...", 0, 1)
-            found = answer(slice, request)
-        click.echo(found.text)
+            text, found, makers = answer(slice, request)
+        click.echo(text)
         if names:
-            make = {name: found.pictures[part] for name, part in pictures.items()}
-            text = partial(_text, slice, request, found)
-            write_answer(out, names, lambda name: make[name](), text)
+            write_answer(
+                out,
+                names,
+                lambda name: makers[pictures[name]](),
+                partial(_document, slice, request, found),
+            )
             report_written(out, names)
 
 
-def _text(slice: Slice, request: RangeRequest, found: RangeAnswer) -> str:
+def _document(slice: Slice, request: RangeRequest, parts: Mapping[str, Any]) -> str:
     """The answer as JSON."""
     from ptmcad.show.document.slicedocument import SLICE
     from ptmcad.show.ranges.rangedocument import document
 
     asked = {"slice": SLICE.write(slice), "request": request_codec().write(request)}
-    return document(slice.name, slice.mechanism, {**found.parts, **asked})
+    return document(slice.name, slice.mechanism, {**parts, **asked})
 
 
 def _parts(request: RangeRequest) -> list[str]:
@@ -262,16 +260,3 @@ def _parts(request: RangeRequest) -> list[str]:
     parts = [""] * bool(request.at) + ["-over"] * request.over
     parts += ["-path"] * (request.start is not None)
     return parts + ["-branches"] * bool(request.quantities)
-
-
-def _start(text: str | None, other: Mapping[str, str]) -> Fraction | None:
-    if text is None:
-        return None
-    if not other:
-        raise ConfigError(
-            f"needs the value of the other axis too, as in --at {SECOND}=3/2", key="--path"
-        )
-    try:
-        return rational(text)
-    except ExpressionError as error:
-        raise ConfigError(str(error), key="--path") from error

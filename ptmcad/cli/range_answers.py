@@ -62,19 +62,14 @@ def request_codec() -> Codec[RangeRequest]:
     )
 
 
-@dataclass(frozen=True, slots=True)
-class RangeAnswer:
-    """What was found, for the terminal, the JSON and the pictures, these by the ends of their
-    names.
-    """
-
-    text: str
-    parts: Mapping[str, Any]
-    pictures: Mapping[str, Callable[[], Any]]
-
-
-def answer(slice: Slice, request: RangeRequest) -> RangeAnswer:
+def answer(
+    slice: Slice, request: RangeRequest
+) -> tuple[str, dict[str, Any], dict[str, Callable[[], Any]]]:
     """Compute all that is asked for.
+
+    Returns
+    -------
+    The text for the terminal, the parts of the JSON, and the pictures by the ends of their names.
 
     Raises
     ------
@@ -88,7 +83,7 @@ def answer(slice: Slice, request: RangeRequest) -> RangeAnswer:
         texts.append(text)
         parts |= rangedocument.part(found, request.digits)
         pictures[end] = make
-    return RangeAnswer("\n\n".join(texts), parts, pictures)
+    return "\n\n".join(texts), parts, pictures
 
 
 def _answers(
@@ -115,9 +110,10 @@ def _answers(
     @cache
     def line() -> SolutionsOnLine:
         """A picture of the paths shows branches too: those of the same solutions."""
-        from ptmcad.ask.lines.diagram import solutions_on_line
+        from ptmcad.ask.lines.diagram import SolutionsOnLine
+        from ptmcad.question.line import line_of
 
-        return solutions_on_line(slice, along, at)
+        return SolutionsOnLine(line_of(slice, along, at, free=True))
 
     if request.start is not None:
         from ptmcad.ask.lines.follower import pose_paths
@@ -161,5 +157,5 @@ def _paths_and_branches(slice: Slice, found: Any, line: Callable[[], SolutionsOn
     model = found.model
     if len(model.unknowns) > MAX_UNKNOWNS or not model.criterion.is_told:
         return render.draw_paths(slice, found)
-    diagram = branch_diagram(slice, found.along.name, found.at, model.sorted_unknowns, line=line())
+    diagram = branch_diagram(slice, found.along.name, found.at, model.sorted_unknowns, found=line())
     return render.draw_paths_and_branches(slice, found, diagram)

@@ -6,7 +6,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from functools import wraps
-from pathlib import Path
 from textwrap import fill
 from typing import Any, NamedTuple
 
@@ -47,15 +46,8 @@ class Third(NamedTuple):
         return self.members == BETWEEN
 
 
-def typed_line(
-    config: Path | None, axes: str | None, sets: tuple[str, ...], ranges: tuple[str, ...]
-) -> Typed:
-    """A record and what changes it, as they were typed."""
-    return Typed(config, axes, sets, ranges)
-
-
-def _typed(mechanism: str | None, **line: Any) -> Typed:
-    return typed_line(**line)._replace(mechanism=mechanism)
+LINE = ("config", "slice", "sets", "ranges")
+"""The options of a record and of what changes it."""
 
 
 def question_asked(asked: Typed, count: str | None, third: Third) -> Slice | Family:
@@ -116,13 +108,11 @@ def slice_options(command: F) -> F:
 
     What an engine finds wrong with the question is reported with its place in the record.
     """
-    command = gathered(asked=(("config", "axes", "sets", "ranges", "mechanism"), _typed))(
-        _with_places(command)
-    )
+    command = gathered(asked=((*LINE, "mechanism"), Typed))(_with_places(command))
     for add in (
         range_option,
         set_option,
-        click.option("--slice", "axes", metavar="X,Y", shell_complete=pair_of_names,
+        click.option("--slice", metavar="X,Y", shell_complete=pair_of_names,
                      help="The two axes, the horizontal one first."),
         click.option("--mechanism", metavar="NAME|FILE", shell_complete=mechanisms,
                      help="Without CONFIG: the mechanism.  [default: ptm]"),

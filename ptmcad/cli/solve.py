@@ -95,7 +95,7 @@ def save(poses: Poses, folder: Path, name: str, names: tuple[str, ...]) -> None:
 @set_option
 @click.option("--digits", type=click.IntRange(1, MAX_DIGITS), default=DIGITS, show_default=True, metavar="N",
               help="Significant digits, all of them right.")  # fmt: skip
-@format_option(FORMATS, f"What to make, of {', '.join(FORMATS)}; the table is printed.", "table")
+@format_option(FORMATS, "What to make, of {}; the table is printed.", "table")
 @out_option
 @name_option("poses")
 @click.option(

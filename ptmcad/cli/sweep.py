@@ -19,7 +19,7 @@ from ptmcad.cli.limits import ResourceLimits, held, limit_options
 from ptmcad.cli.progress import ProgressBar
 from ptmcad.cli.slices import engine_option, question_in
 from ptmcad.errors import ConfigError, shown_path
-from ptmcad.extras import Extra, require, require_ffmpeg
+from ptmcad.extras import require, require_ffmpeg
 from ptmcad.process.handover import Topic, send
 from ptmcad.process.output import Writer, check_writable, text_writer, write_files
 from ptmcad.question.config.sweeps import sweep_from
@@ -58,7 +58,7 @@ def _wanted(
 @format_option(
     FORMATS,
     "What to write of the whole sweep besides the index and the results: csv (a line for each member), "
-    "html (an atlas), gif or mp4 (a film of the maps).  [default: none]",
+    "html (an atlas), gif or mp4 (a film of the maps).",
 )
 @click.option(
     "--fps",
@@ -113,7 +113,7 @@ def command(
     """
     question = sweep_from(config)
     if scheduler is not None:
-        require(Extra.distributed, key="--scheduler")
+        require("distributed", key="--scheduler")
     if "mp4" in formats:
         require_ffmpeg()
     folder = Path(f"{question.name}-sweep") if out is None else out

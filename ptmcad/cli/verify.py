@@ -154,47 +154,37 @@ def _reports(path: Path, how: Mapping[str, Any]) -> Iterator[tuple[str, Verify]]
     if path.is_dir():
         yield "", partial(_verified_sweep, path, how)
         return
-    kind = kind_of(path)
+    kind, seed = kind_of(path), how["seed"]
     if kind in ("design", "poses", "range"):
-        report_idle(
-            [
-                (name, how[name] is not None, "all that is stored is checked")
-                for name in ("boxes", "effort")
-            ]
-        )
+        report_idle([(name, True, "all that is stored is checked") for name in ("boxes", "effort")])
     if kind == "design":
         design = read_other(path, BestDesign.from_json, "ptmcad-design/1")
-        yield "", partial(_verified_design, design, _versions_in(path), how["seed"])
+        yield "", partial(_verified_design, design, _versions_in(path), seed)
     elif kind == "poses":
         poses = read_other(path, Poses.from_json, "ptmcad-poses/1")
         yield "", partial(_verified_poses, poses, _versions_in(path))
     elif kind == "range":
-        found = read_other(path, _range_in, "ptmcad-range/1")
-        yield "", partial(_verified_range, path, found, how["seed"])
+        form = "ptmcad-range/1"
+        found = read_other(path, lambda text: opened(text, form, MAX_BYTES, "ptmcad range"), form)
+        yield "", partial(_verified_range, path, {"format": form, **found.value}, seed)
     elif kind == "family":
         family = read_family_file(path, whole=False)
         for value, member in family:
             yield f"{family.free.name} = {text_of(value)}", of_map(member)
         yield (
             f"what the members have in common over {family.free.name}",
-            partial(_verified_family, family, how["seed"]),
+            partial(_verified_family, family, seed),
         )
     else:
         yield "", of_map(read_result(path, whole=False))
-
-
-def _range_in(text: str) -> dict[str, Any]:
-    return {
-        "format": "ptmcad-range/1",
-        **opened(text, "ptmcad-range/1", MAX_BYTES, "ptmcad range").value,
-    }
 
 
 def _meet(one: Bounds | None, other: Bounds | None) -> bool:
     """Whether bounds of a width may be of the same one."""
     if one is None or other is None:
         return one == other
-    return max(Fraction(one[0]), Fraction(other[0])) <= min(Fraction(one[1]), Fraction(other[1]))
+    lows, highs = (map(Fraction, ends) for ends in zip(one, other, strict=True))
+    return max(lows) <= min(highs)
 
 
 def _verified_sweep(folder: Path, how: Mapping[str, Any], progress: Progress) -> VerifyReport:
@@ -207,14 +197,8 @@ def _verified_sweep(folder: Path, how: Mapping[str, Any], progress: Progress) ->
 
     sweep = read_sweep(folder)
     found = list(members(sweep))
-    along = next(
-        (
-            m.summary.widest.along
-            for m in found
-            if m.summary is not None and m.summary.widest is not None
-        ),
-        "",
-    )
+    known = (m.summary.widest for m in found if m.summary is not None)
+    along = next((widest.along for widest in known if widest is not None), "")
 
     def check(member: Member) -> str:
         summary = member.summary
@@ -361,7 +345,7 @@ def _verified_range(
         load_certified(progress)
 
     def anew(digits: int) -> Any:
-        parts = answer(slice, replace(request, digits=digits)).parts
+        _, parts, _ = answer(slice, replace(request, digits=digits))
         asked = {"slice": data["slice"], "request": data["request"]}
         return json.loads(document(slice.name, slice.mechanism, {**parts, **asked}))
 

@@ -101,7 +101,7 @@ def _sign_curve(model: Model, without: frozenset[str]) -> Iterator[PlanStep]:
 
 def _of_jacobian(model: Model, name: str) -> str:
     """The saving's reason, with the name of the Jacobian's determinant."""
-    return BY_NAME[name].why.replace("det H", model.criterion.determinant)
+    return BY_NAME[name][1].replace("det H", model.criterion.determinant)
 
 
 def _saving_of(c: Component) -> str:

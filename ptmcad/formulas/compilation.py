@@ -23,7 +23,7 @@ from typing import Any, TypeVar, cast
 import numpy as np
 
 from ptmcad.errors import ConfigError
-from ptmcad.extras import Extra
+from ptmcad.extras import remedy
 
 if sys.platform != "win32":
     import fcntl
@@ -36,7 +36,7 @@ try:
 except ImportError as missing:
     if not isinstance(missing, ModuleNotFoundError):  # it is installed, and does not work
         raise
-    raise ConfigError(Extra.certified.message) from missing
+    raise ConfigError(remedy("certified")) from missing
 except ValueError as error:  # numba reads its variables as it loads
     raise ConfigError(
         f"numba, on which the certified engine runs, cannot be loaded: {error} "

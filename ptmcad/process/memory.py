@@ -15,7 +15,6 @@ import sys
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager, redirect_stderr
 from pathlib import Path
-from typing import NamedTuple
 
 from ptmcad.errors import ConfigError
 from ptmcad.process.handover import watched
@@ -37,13 +36,8 @@ SIGNS = (
 not allocate, GMP also at its size limit."""
 
 
-class Bound(NamedTuple):
-    """A number of bytes, and how to name it to the user."""
-
-    size: int
-    text: str
-
-
+Bound = tuple[int, str]
+"""A bound in bytes, and in words."""
 _in_force: list[tuple[Bound, tuple[int, int]]] = []
 """The bound that this process keeps, if any, and the soft and hard limits that its caller had set.
 """
@@ -63,7 +57,7 @@ def bounded(bound: Bound) -> Iterator[None]:
     is lower.
     """
     soft, hard = resource.getrlimit(resource.RLIMIT_DATA)
-    size = bound.size if soft == resource.RLIM_INFINITY else min(bound.size, soft)
+    size = bound[0] if soft == resource.RLIM_INFINITY else min(bound[0], soft)
     resource.setrlimit(resource.RLIMIT_DATA, (size, hard))
     _in_force.append((bound, (soft, hard)))
     try:
@@ -109,7 +103,7 @@ def loading(what: str = "") -> Iterator[None]:
     least = missing_room()
     if what and least is not None:
         raise ConfigError(
-            f"{_in_force[-1][0].text} is too little for {what}, which has {least - MIN_ROOM >> 20}M when its "
+            f"{_in_force[-1][0][1]} is too little for {what}, which has {least - MIN_ROOM >> 20}M when its "
             f"libraries are loaded: at least {-(-least // (1 << 20))}M",
             key="--max-memory",
         )
@@ -126,7 +120,7 @@ def missing_room(room: int = MIN_ROOM) -> int | None:
         if line.startswith("VmData:")
     ]
     least = max(used, default=0) + room
-    return least if _in_force and least > _in_force[-1][0].size else None
+    return least if _in_force and least > _in_force[-1][0][0] else None
 
 
 def exhausted(text: str, most: int = 0, own: Sequence[str] = (), how: str = "") -> str:

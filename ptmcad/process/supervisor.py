@@ -89,7 +89,7 @@ def supervise(work: Callable[[], int], heeded: Sequence[int]) -> NoReturn:
         os._exit(2)
     os.set_blocking(wake[1], False)
     if child:
-        os._exit(Watch(child, messages[0], printed[0], heeded).run(wake, before))
+        os._exit(_Watch(child, messages[0], printed[0], heeded).run(wake, before))
     for number in heeded:
         signal.signal(number, _terminate)
     for descriptor in (messages[0], printed[0], lifeline[1], wake[0]):
@@ -174,7 +174,7 @@ def _redirect(printed: int) -> None:
     )
 
 
-class Watch:
+class _Watch:
     """The parent's side: what the child has reported, what has been asked of it, and what to do at
     its end.
     """
@@ -195,7 +195,7 @@ class Watch:
         """By the child, once it has ended."""
 
     def run(self, wake: tuple[int, int], before: set[int | signal.Signals]) -> int:
-        """Watch until the child has ended, tidy up, and return the exit status."""
+        """_Watch until the child has ended, tidy up, and return the exit status."""
         ends = [self.messages, self.printed, wake[0]]
         for descriptor in ends:
             os.set_blocking(descriptor, False)

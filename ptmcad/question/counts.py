@@ -75,22 +75,6 @@ class Margin(NamedTuple, Generic[V]):
     squares: tuple[V, ...] = ()
 
 
-class PoseColumn(NamedTuple):
-    """How tables of poses say whether a predicate holds.
-
-    Attributes
-    ----------
-    margins : numbers of a `Pose` that are positive exactly where the predicate's margins are.
-    head, note, tally : above the column, its meaning, and what follows the number of poses at which
-        it holds.
-    """
-
-    margins: Callable[[Any], Sequence[Enclosure]]
-    head: str
-    note: str
-    tally: str
-
-
 class Predicate(NamedTuple):
     """What a stable solution has to satisfy beyond a model's own conditions.
 
@@ -102,7 +86,9 @@ class Predicate(NamedTuple):
     needs_free_lengths : whether it says nothing without any.
     of_systems, without_free_lengths : what is wrong with this count of a model that has no springs,
         or none with a free length.
-    column : of a table of poses; None where these leave it out.
+    of_pose : numbers of a `Pose` that are positive exactly where the margins are.
+    head, note, tally : above its column of a table of poses, its meaning, and what follows the
+        number of poses at which it holds.
     is_always_stored : whether each certified map has its number, or null where that was not asked
         for: so it has been since that form of documents was made. Of others a map has the number
         that its count is of.
@@ -113,7 +99,10 @@ class Predicate(NamedTuple):
     needs_free_lengths: bool
     of_systems: str
     without_free_lengths: str
-    column: PoseColumn | None = None
+    of_pose: Callable[[Any], Sequence[Enclosure]]
+    head: str
+    note: str
+    tally: str
     is_always_stored: bool = False
 
 
@@ -209,12 +198,10 @@ KINDS = {
             of_systems="a system has no springs whose lengths would be admissible: count stable or total",
             without_free_lengths="admissible asks that every spring is longer than its free length, and none has a "
             "free length here: choose stable",
-            column=PoseColumn(
-                margins=lambda pose: pose.forces,
-                head="tense",
-                note="stable, and every spring longer than its free length; a negative force pushes",
-                tally="stable with every spring longer than its free length",
-            ),
+            of_pose=lambda pose: pose.forces,
+            head="tense",
+            note="stable, and every spring longer than its free length; a negative force pushes",
+            tally="stable with every spring longer than its free length",
             is_always_stored=True,
         ),
     ),
@@ -226,10 +213,6 @@ PREDICATES = {
     count.value: kind.predicate for count, kind in KINDS.items() if kind.predicate is not None
 }
 """Those of the table by the names of their counts."""
-POSE_COLUMNS = {
-    name: predicate.column for name, predicate in PREDICATES.items() if predicate.column is not None
-}
-"""Of those that tables of poses have."""
 
 
 def further_names(count: Count) -> tuple[str, ...]:

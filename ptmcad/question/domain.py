@@ -19,7 +19,7 @@ from ptmcad.errors import ExpressionError, GeometryError
 from ptmcad.model import Kind, Model
 from ptmcad.model.elements import Part
 from ptmcad.question.positivity import Need, decide, middle_of, named, number, place, window_of
-from ptmcad.question.signs import PROVED, Finding, Subject, Undecided, Witness
+from ptmcad.question.signs import PROVED, Finding, Subject, Witness
 from ptmcad.question.slice import Axes, Slice
 from ptmcad.text.expressions import Expression, Expressions, constant
 from ptmcad.text.parsing import value_in_axes
@@ -48,7 +48,7 @@ def sign_of(subject: Subject, axes: Axes) -> Finding:
             return found._replace(
                 verdict=verdict, problem=_refutation(subject, asked, verdict, axes), is_final=True
             )
-        if isinstance(verdict, Undecided) and not found.problem:
+        if verdict != PROVED and not found.problem:
             problem = (
                 f"it is not proved that {subject.text} is {asked.value} in the whole window: its sign is not decided "
                 f"{place(verdict, axes)}; narrow the window or simplify the expression"
@@ -91,7 +91,7 @@ def sign_of_part(
             part.tree, {**dict.fromkeys(model.free_lengths, constant(0)), **parameters}
         )
     except ExpressionError as error:
-        return Finding(subject, window, Undecided(()), f"cannot be judged: {error.message}")
+        return Finding(subject, window, (window,), f"cannot be judged: {error.message}")
     subject = subject._replace(value=value)
     if value.is_constant:
         problem = part.fault(value.constant())
@@ -99,7 +99,7 @@ def sign_of_part(
         return Finding(subject, window, verdict, problem)
     if value.degree > MAX_DEGREE:
         problem = f"{part.text} has degree {value.degree} in the axes: at most {MAX_DEGREE} can be computed"
-        return Finding(subject, window, Undecided(()), problem)
+        return Finding(subject, window, (window,), problem)
     return known.get(subject) or sign_of(subject, axes)
 
 

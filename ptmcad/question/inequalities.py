@@ -46,7 +46,9 @@ class Inequality:
         ExpressionError
             For a divisor that may be zero.
         """
-        (low, high), (least, most) = (interpret(side, Intervals(value)) for side in self.difference)
+        (low, high), (least, most) = (
+            interpret(side, _Intervals(value)) for side in self.difference
+        )
         return low - most, high - least
 
 
@@ -66,7 +68,7 @@ def condition_of(text: str) -> Inequality:
 
 
 @dataclass(frozen=True, slots=True)
-class Intervals:
+class _Intervals:
     """Expressions in intervals with rational ends."""
 
     value: Callable[[str], Bounds]
@@ -121,6 +123,6 @@ def named(known: Mapping[str, Bounds], texts: Mapping[str, str]) -> Callable[[st
             return known[name]
         if name not in texts:
             raise unknown_name(name, 0, (*known, *texts))
-        return interpret(parse(texts[name]), Intervals(value))
+        return interpret(parse(texts[name]), _Intervals(value))
 
     return value

@@ -1,8 +1,8 @@
 """The sign of a rational function in the open window: proved, refuted by a point, or undecided with
 the place.
 
-Guarantee: `Proved` is a theorem, and a `Witness` is exact: the function has the stated value at the
-stated point. What is neither is `Undecided`, a value of its own and never taken for a proof.
+Guarantee: `PROVED` is a theorem, and a `Witness` is exact: the function has the stated value at the
+stated point. Any other verdict names the boxes that are undecided, and is never taken for a proof.
 
 Bernstein coefficients on boxes bound the polynomial there, and those at its corners are its values;
 the box with the lowest bound is halved next, so that the work gathers where a dip may be. Where
@@ -22,7 +22,7 @@ from itertools import count, pairwise, product
 from math import comb, lcm
 from typing import NamedTuple
 
-from ptmcad.question.signs import PROVED, Box, Corner, Interval, Undecided, Verdict, Witness
+from ptmcad.question.signs import PROVED, Box, Corner, Interval, Verdict, Witness
 from ptmcad.question.slice import Axes
 from ptmcad.text.expressions import Expression, Term, polynomial_value
 from ptmcad.text.numerals import approximate_text
@@ -56,7 +56,7 @@ def decide(expression: Expression, axes: Axes, need: Need) -> Verdict:
     middle = middle_of(window)
     denominator = polynomial_value(expression.denominator, *middle)
     if denominator == 0:
-        return Witness(middle, denominator) if need is Need.NO_POLE else Undecided((window,))
+        return Witness(middle, denominator) if need is Need.NO_POLE else (window,)
     side = 1 if denominator > 0 else -1
     if need is Need.NO_POLE:
         verdict = _decided(_times(expression.denominator, side), window, True)
@@ -69,16 +69,16 @@ def decide(expression: Expression, axes: Axes, need: Need) -> Verdict:
         denominator = polynomial_value(expression.denominator, *verdict.point)
         if denominator == 0:
             x, y = verdict.point
-            return Undecided((((x, x), (y, y)),))
+            return (((x, x), (y, y)),)
         return Witness(verdict.point, side * verdict.value / denominator)
     return verdict
 
 
-def place(verdict: Witness | Undecided, axes: Axes) -> str:
+def place(verdict: Verdict, axes: Axes) -> str:
     """Where it is, in words: ``at rho = 1, m = 2``, or ``near``."""
     if isinstance(verdict, Witness):
         return f"at {named(verdict.point, axes)}"
-    return f"near {named(middle_of(verdict.boxes[0]), axes)}"
+    return f"near {named(middle_of(verdict[0]), axes)}"
 
 
 def named(point: Corner, axes: Axes) -> str:
@@ -132,15 +132,11 @@ def _decided(terms: tuple[Term, ...], window: Box, strict: bool) -> Verdict:
         return witness
     for _ in range(min(MAX_SPLITS, MAX_WORK // cost)):
         if not waiting:
-            return PROVED
+            break
         for half in _halves(heappop(waiting)[2]):
             if (witness := look(half)) is not None:
                 return witness
-    return (
-        Undecided(tuple(part.box for _, _, part in sorted(waiting, key=lambda w: w[:2])))
-        if waiting
-        else PROVED
-    )
+    return tuple(part.box for _, _, part in sorted(waiting, key=lambda w: w[:2]))
 
 
 def _is_proved(part: _Part, window: Box, strict: bool) -> bool:

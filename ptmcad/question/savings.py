@@ -9,8 +9,6 @@ made and which were kept.
 from __future__ import annotations
 
 from collections.abc import Iterable
-from enum import Enum
-from typing import NamedTuple
 
 from ptmcad.errors import ConfigError
 from ptmcad.text.syntax import did_you_mean
@@ -25,94 +23,60 @@ IMPORTED = ("numpy", "matplotlib.figure", "sympy", "numba")
 """What the saving "imports" leaves out where nothing needs it."""
 
 
-class Engine(Enum):
-    """What makes a saving."""
-
-    EXACT = "exact engine"
-    CERTIFIED = "certified engine"
-    ANY = "both engines"
-
-
-class Saving(NamedTuple):
-    """One saving.
-
-    Attributes
-    ----------
-    what : that is left out.
-    why : the reason for which the answer is the same.
-    """
-
-    name: str
-    engine: Engine
-    what: str
-    why: str
-
-
-_WHAT_AND_WHY = {
-    Engine.EXACT: (
-        (
-            "sign-curve",
+SAVINGS = {
+    "exact": {
+        "sign-curve": (
             "projection of H11 = 0",
             "where it vanishes off the critical curves, det H < 0",
         ),
-        (
-            "hermite-matrix",
+        "hermite-matrix": (
             "determinant of the Hermite matrix",
             "the norm of det H has the same critical factors and no others",
         ),
-        (
-            "infinity",
+        "infinity": (
             "curves over which solutions leave every bounded set",
             "near them det H stays away from 0 at every solution, and real ones are bounded",
         ),
-        ("no-real-points", "components without a point in the window", "no cell touches them"),
-        ("axis-order", "decomposition over the other axis", "regions do not depend on it"),
-        (
-            "even-powers",
+        "no-real-points": ("components without a point in the window", "no cell touches them"),
+        "axis-order": ("decomposition over the other axis", "regions do not depend on it"),
+        "even-powers": (
             "discriminants and resultants of full degree",
             "where only powers of u^k occur they are computed in u^k",
         ),
-        (
-            "equal-counts",
+        "equal-counts": (
             "areas beside walls that separate no regions",
             "what one cell has too much there its neighbour in the region has too little",
         ),
-    ),
-    Engine.CERTIFIED: (
-        (
-            "folds-of-saddles",
+    },
+    "certified": {
+        "folds-of-saddles": (
             "folds of saddles and maxima",
             "the number of stable equilibria does not change",
         ),
-        (
-            "cones-and-creases",
+        "cones-and-creases": (
             "points where a spring has no length",
             "no minimum appears or vanishes there without a fold",
         ),
-        (
-            "dependent-equations",
+        "dependent-equations": (
             "boxes on which dependent equations do not vanish",
             "they vanish at every equilibrium",
         ),
-        (
-            "mirror-images",
+        "mirror-images": (
             "mirror images of folds, and what is singular on the mirror",
             "an exchange or a reflection of the unknowns leaves the slice as it is",
         ),
-    ),
-    Engine.ANY: (
-        (
-            "imports",
+    },
+    "any": {
+        "imports": (
             "imports of numpy, matplotlib, sympy and numba",
             "nothing needs them before it asks",
         ),
-    ),
+    },
 }
-SAVINGS = tuple(
-    Saving(name, engine, *rest) for engine, table in _WHAT_AND_WHY.items() for name, *rest in table
-)
-"""Every saving, in the order in which the engines make them."""
-BY_NAME = {saving.name: saving for saving in SAVINGS}
+"""Of each engine, and of both, in the order in which they make them: the name, what is left out, and
+the reason for which the answer is the same.
+"""
+BY_NAME = {name: words for table in SAVINGS.values() for name, words in table.items()}
 
 
 def switched_off(names: Iterable[str], certified: bool) -> frozenset[str]:
@@ -130,16 +94,16 @@ def switched_off(names: Iterable[str], certified: bool) -> frozenset[str]:
     """
     given = (names,) if isinstance(names, str) else sorted(names)
     check_names(given)
-    engine = Engine.CERTIFIED if certified else Engine.EXACT
-    own = frozenset(s.name for s in SAVINGS if s.engine in (engine, Engine.ANY))
+    other, engine = ("exact", "certified")[:: 1 if certified else -1]
+    own = (*SAVINGS[engine], *SAVINGS["any"])
     for name in given:
         if name != ALL and name not in own:
             raise ConfigError(
-                f"{name!r} is a saving of the {BY_NAME[name].engine.value}, and this slice is the {engine.value}'s, "
-                f"which has {', '.join(s.name for s in SAVINGS if s.name in own)}",
+                f"{name!r} is a saving of the {other} engine, and this slice is the {engine} engine's, "
+                f"which has {', '.join(own)}",
                 key="without",
             )
-    return own if ALL in given else frozenset(given)
+    return frozenset(own if ALL in given else given)
 
 
 def check_names(names: Iterable[str]) -> None:

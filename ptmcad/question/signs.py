@@ -8,7 +8,6 @@ of the new ones.
 
 from __future__ import annotations
 
-from enum import Enum
 from fractions import Fraction
 from typing import NamedTuple
 
@@ -18,15 +17,6 @@ from ptmcad.text.expressions import Expression
 Corner = tuple[Fraction, Fraction]
 Interval = tuple[Fraction, Fraction]
 Box = tuple[Interval, Interval]
-
-
-class Proved(Enum):
-    """The function is what was asked for at every point of the open window."""
-
-    PROVED = "proved"
-
-
-PROVED = Proved.PROVED
 
 
 class Witness(NamedTuple):
@@ -43,13 +33,10 @@ class Witness(NamedTuple):
     other: Corner | None = None
 
 
-class Undecided(NamedTuple):
-    """Neither: a dip to zero or below may be hidden in these boxes, and nowhere else."""
-
-    boxes: tuple[Box, ...]
-
-
-Verdict = Proved | Witness | Undecided
+Verdict = Witness | tuple[Box, ...]
+"""A witness, or the boxes that hide all dips to zero or below; their number is zero for a proof."""
+PROVED: tuple[Box, ...] = ()
+"""The function is what was asked for at every point of the open window."""
 
 
 class Subject(NamedTuple):

@@ -19,7 +19,7 @@ from ptmcad.answer.counts import Counted
 from ptmcad.answer.field import Field
 from ptmcad.answer.regionmap import RegionMap
 from ptmcad.errors import ConfigError
-from ptmcad.extras import Extra, require
+from ptmcad.extras import require
 from ptmcad.question.counts import PREDICATES, further_names
 from ptmcad.question.slice import within_doubles
 from ptmcad.show.polynomial_text import Style, polynomial_text
@@ -161,7 +161,7 @@ def pandas_frame(
 
 
 def _pandas() -> Any:
-    require(Extra.data)
+    require("data")
     import pandas as pd
 
     return pd

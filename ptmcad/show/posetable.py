@@ -14,7 +14,7 @@ from ptmcad.answer.regionmap import Status
 from ptmcad.answer.words import counted, listed, noun, of_what, untold
 from ptmcad.model import Model, built_in
 from ptmcad.model.work import foreign, loads_at
-from ptmcad.question.counts import POSE_COLUMNS, PoseColumn
+from ptmcad.question.counts import PREDICATES, Predicate
 from ptmcad.question.slice import merged
 from ptmcad.show.columns import WIDTH, aligned, wrapped
 from ptmcad.show.units import declared_units
@@ -168,9 +168,9 @@ def _summary(poses: Poses) -> list[str]:
     return parts + ([poses.remark] if poses.remark else [])
 
 
-def _columns(poses: Poses) -> dict[str, PoseColumn]:
+def _columns(poses: Poses) -> dict[str, Predicate]:
     """Those of predicates, where it is asked whether these hold."""
-    return POSE_COLUMNS if any(pose.has_predicates for pose in poses.equilibria) else {}
+    return PREDICATES if any(pose.has_predicates for pose in poses.equilibria) else {}
 
 
 def _blocks(poses: Poses, digits: int) -> Iterator[list[list[str]]]:
@@ -219,7 +219,7 @@ def _groups(poses: Poses) -> list[list[Numbers]]:
     groups = zip(*(pose.quantities(model) for pose in found), strict=True)
     numbers: list[list[Numbers]] = [
         [
-            (column[0].name, column[0].unit, [each.value for each in column])
+            (*column[0][:2], [number for _, _, number in column])
             for column in zip(*group, strict=True)
         ]
         for group in groups

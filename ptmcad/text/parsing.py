@@ -93,7 +93,7 @@ def rational(text: object) -> Fraction:
     return parse(text).constant()
 
 
-def number_for(key: str, value: object) -> Fraction:
+def number_for(key: str | None, value: object) -> Fraction:
     """The number that a caller gave for something.
 
     Raises

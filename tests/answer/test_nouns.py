@@ -90,19 +90,19 @@ def test_numbers_of_a_pose_by_name_are_those_of_its_fields() -> None:
     assert poses.working == poses.equilibria[: poses.stable]
     for pose in poses.equilibria:
         unknowns, nodes, springs, torsion = pose.quantities(poses.model)
-        assert [(q.name, q.unit) for q in unknowns] == [
+        assert [q[:2] for q in unknowns] == [
             ("th1", "rad"),
             ("th2", "rad"),
             ("th1", "deg"),
             ("th2", "deg"),
         ]
-        assert [q.value for q in unknowns] == [*pose.angles, *pose.degrees]
-        assert {q.name: q.value for q in nodes} == {
+        assert [value for _, _, value in unknowns] == [*pose.angles, *pose.degrees]
+        assert {name: value for name, _, value in nodes} == {
             f"{name} {axis}": x
             for name in poses.model.moving
             for axis, x in zip("xy", pose.nodes[name], strict=True)
         }  # type: ignore[attr-defined]
-        assert [q.value for q in springs] == [s.length for s in pose.springs] + [
+        assert [value for _, _, value in springs] == [s.length for s in pose.springs] + [
             s.force for s in pose.springs
         ]
         assert torsion == ()

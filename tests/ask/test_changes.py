@@ -118,7 +118,7 @@ def test_the_ends_of_the_range_are_told_apart() -> None:
 
 def sampled(question: dict[str, Any], tolerance: Fraction = Fraction(1, 1000)) -> Changes:
     members = asking.Members(in_common(family_from(question)), DEFAULTS)
-    return asking._bisected(members, tolerance, "as a test")
+    return asking.changes_among(members, "as a test", tolerance)
 
 
 def agree(exact: Changes, enclosed: Changes) -> None:

@@ -26,7 +26,7 @@ from ptmcad.cover.rectangles import Cover
 from ptmcad.errors import LimitReached
 from ptmcad.options import Options
 from ptmcad.process.handover import Own, Topic, received
-from ptmcad.process.supervisor import OVERRUN_SECONDS, Watch
+from ptmcad.process.supervisor import OVERRUN_SECONDS, _Watch
 
 HAND = ["--slice", "rho,L2", "--range", "rho=0:2", "--range", "L2=1:3", "--set", "l0=1/5", "--set", "F3=-10",
         "--set", "F4=-10", "--format", "json"]  # fmt: skip
@@ -246,7 +246,7 @@ def test_compiling_is_no_part_of_the_time_limit(
     assert 1600 <= again - begun <= 1600 + taken
     # the library loads once more, which takes no time outside of this test
     assert 2600 <= engine["options"].deadline - counted <= 2600 + taken
-    watch = Watch(0, 0, 0, ())
+    watch = _Watch(0, 0, 0, ())
     watch.reports[Topic.DEADLINE] = [repr(stopped), ""]
     assert watch._deadline() == math.inf
     watch.reports[Topic.DEADLINE] = [repr(again), "600 s"]

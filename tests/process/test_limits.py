@@ -27,7 +27,7 @@ from test_faults import FIG2, IN_C, PARTIAL, ROOT, Running, classified, linux
 from ptmcad.cli import run
 from ptmcad.cli.drawing import picture, write_result
 from ptmcad.errors import ConfigError, PictureError
-from ptmcad.process.memory import MIN_ROOM, Bound, bounded, loading
+from ptmcad.process.memory import MIN_ROOM, bounded, loading
 from ptmcad.process.streams import quiet_stream
 
 pytestmark = linux
@@ -186,12 +186,12 @@ def test_a_bound_that_the_libraries_exceed_is_refused() -> None:
     status = Path("/proc/self/status").read_text()
     used = int(re.findall(r"VmData:\s+([0-9]+) kB", status)[0]) << 10
     before = resource.getrlimit(resource.RLIMIT_DATA)
-    with bounded(Bound(used + 4 * MIN_ROOM, "100M")), loading("the engine"):
+    with bounded((used + 4 * MIN_ROOM, "100M")), loading("the engine"):
         assert resource.getrlimit(resource.RLIMIT_DATA) == before
     refused = pytest.raises(
         ConfigError, match=r"100M is too little for the engine, which has .*: at least [0-9]+M"
     )
-    with bounded(Bound(used + MIN_ROOM // 2, "100M")):
+    with bounded((used + MIN_ROOM // 2, "100M")):
         with refused as caught, loading("the engine"):
             assert resource.getrlimit(resource.RLIMIT_DATA) == before
         assert resource.getrlimit(resource.RLIMIT_DATA) != before

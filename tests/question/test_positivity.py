@@ -21,7 +21,7 @@ from ptmcad.question.positivity import (
     place,
     polynomial_value,
 )
-from ptmcad.question.signs import Proved, Undecided
+from ptmcad.question.signs import PROVED, Witness
 from ptmcad.question.slice import Axis
 from ptmcad.text.expressions import Expression, constant
 from ptmcad.text.parsing import parse
@@ -81,11 +81,8 @@ TOUCHING = {
 def check(expression: Expression, need: Need, axes: tuple[Axis, Axis] = AXES) -> str:
     """``proved``, ``refuted`` or ``undecided``; a witness is checked by exact evaluation."""
     verdict = decide(expression, axes, need)
-    if isinstance(verdict, Undecided):
-        assert verdict.boxes
-        return "undecided"
-    if isinstance(verdict, Proved):
-        return "proved"
+    if not isinstance(verdict, Witness):
+        return "proved" if verdict == PROVED else "undecided"
     for value, a in zip(verdict.point, axes, strict=True):
         assert a.low < value < a.high
     if need is Need.NO_POLE:
@@ -166,8 +163,8 @@ def test_no_thin_dip_is_taken_for_positive(kind: str, need: Need) -> None:
 def test_what_halving_leaves_is_undecided_with_its_places() -> None:
     valley = parse("(rho^3+F^3-rho*F-1/7)^2 + 1e-40", NAMES)
     verdict = decide(valley, AXES, Need.NOT_NEGATIVE)
-    assert isinstance(verdict, Undecided)
-    for (x0, x1), (y0, y1) in verdict.boxes:
+    assert not isinstance(verdict, Witness) and verdict
+    for (x0, x1), (y0, y1) in verdict:
         assert 0 <= x0 < x1 <= 2
         assert -3 <= y0 < y1 <= 1
     assert place(verdict, AXES).startswith("near rho = ")

@@ -18,7 +18,7 @@ import ptmcad
 from ptmcad.answer.regionmap import RegionMap
 from ptmcad.cover.rectangles import Cover
 from ptmcad.question.positivity import Need, decide
-from ptmcad.question.signs import Proved, Undecided
+from ptmcad.question.signs import PROVED, Witness
 from ptmcad.question.slice import Axis, Count, Slice
 from ptmcad.text.expressions import Expression, axis, constant
 from ptmcad.text.parsing import parse
@@ -39,9 +39,9 @@ def sign(expression: Expression, need: Need) -> Sign:
 def agree(expression: Expression, need: Need) -> bool:
     """Whether both decide; a contradiction fails."""
     engine, checker = decide(expression, AXES, need), sign(expression, need)
-    if isinstance(engine, Undecided) or checker is Sign.UNCHECKED:
+    if (not isinstance(engine, Witness) and engine) or checker is Sign.UNCHECKED:
         return False
-    assert (checker is Sign.PROVED) == isinstance(engine, Proved)
+    assert (checker is Sign.PROVED) == (engine == PROVED)
     return True
 
 

@@ -13,7 +13,8 @@ from support.maps import shipped
 import ptmcad
 from ptmcad.answer.motion import Motion
 from ptmcad.ask.fields import track
-from ptmcad.ask.fields.course import Course, corners_of
+from ptmcad.ask.fields.course import corners_of
+from ptmcad.ask.fields.track import Track
 from ptmcad.errors import ConfigError, PtmcadError
 from ptmcad.workbench.fields import posemotion as module
 from ptmcad.workbench.fields.posemotion import motion_of
@@ -152,8 +153,8 @@ def test_a_path_goes_evenly_through_its_corners() -> None:
     corners = corners_of(
         slice, {"rho": [Fraction(1, 2), 1, 1, 1], "L2": ["1/2", "1/2", "1/2", "3/2"]}
     )
-    course = Course.through(slice, corners)
-    assert [course.at(Fraction(k, 6)) for k in range(7)] == [
+    track = Track(slice, corners)
+    assert [track.place(Fraction(k, 6)) for k in range(7)] == [
         (Fraction(1, 2) + Fraction(k, 4), Fraction(1, 2))
         if k <= 2
         else (1, Fraction(1, 2) + Fraction(k - 2, 4))

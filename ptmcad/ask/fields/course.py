@@ -5,10 +5,6 @@ axes.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
-from fractions import Fraction
-from itertools import pairwise
-from math import hypot
 from typing import Any
 
 from ptmcad.answer.motion import Place
@@ -82,35 +78,3 @@ def _of_text(text: str) -> dict[str, list[str]]:
 
 def _listed(value: Any) -> list[Any]:
     return list(value) if isinstance(value, Sequence) and not isinstance(value, str) else [value]
-
-
-@dataclass(frozen=True, slots=True)
-class Course:
-    """A path with the lengths of its pieces, in shares of the window's sides.
-
-    ``ends`` are the shares of the path at its corners, rounded to rational numbers.
-    """
-
-    corners: tuple[Place, ...]
-    ends: tuple[Fraction, ...]
-
-    @classmethod
-    def through(cls, slice: Slice, corners: tuple[Place, ...]) -> Course:
-        sides = [axis.width for axis in slice.axes]
-        lengths = [
-            hypot(*(float((b - a) / side) for a, b, side in zip(p, q, sides, strict=True)))
-            for p, q in pairwise(corners)
-        ]
-        kept = [k for k, length in enumerate(lengths) if length > MIN_LENGTH * max(lengths)]
-        total, done, ends = sum(lengths[k] for k in kept), 0.0, [Fraction(0)]
-        for k in kept:
-            done += lengths[k]
-            ends.append(Fraction(done / total).limit_denominator(10**9))
-        return cls((corners[kept[0]], *(corners[k + 1] for k in kept)), (*ends[:-1], Fraction(1)))
-
-    def at(self, share: Fraction) -> Place:
-        """The point where a share of the path is done."""
-        k = max(i for i, end in enumerate(self.ends[:-1]) if end <= share)
-        part = (share - self.ends[k]) / (self.ends[k + 1] - self.ends[k])
-        (a, b), (c, d) = self.corners[k], self.corners[k + 1]
-        return a + (c - a) * part, b + (d - b) * part

@@ -10,8 +10,7 @@ tried in between. The joins are no claim.
 from __future__ import annotations
 
 import itertools
-from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
 from fractions import Fraction
 from math import cos, pi
 from typing import Any
@@ -22,11 +21,9 @@ from ptmcad.answer.regionmap import Status
 from ptmcad.ask.lines.along import intervals
 from ptmcad.ask.quantities import Quantity, of_pose, quantity, unit_of
 from ptmcad.ask.solving import poses_at
-from ptmcad.model import Model
 from ptmcad.options import Progress
-from ptmcad.question.line import on_line, varying_axis
+from ptmcad.question.line import Line, line_of
 from ptmcad.question.slice import Slice
-from ptmcad.text.expressions import Expressions, values_at
 
 SAMPLES = 24
 """Values in each interval, closer to its ends, where branches turn."""
@@ -38,15 +35,9 @@ CLEAR = 0.6
 """A join is clear when it is shorter than this part of the next best."""
 DIGITS = 6
 
-_Place = tuple[float, ...]
 
-
-@dataclass(frozen=True, slots=True)
-class Sample:
-    """All solutions at a value."""
-
-    value: Fraction
-    poses: tuple[Pose, ...]
+_Sample = tuple[Fraction, tuple[Pose, ...]]
+"""A value, and all solutions there."""
 
 
 def branch_diagram(
@@ -55,7 +46,7 @@ def branch_diagram(
     at: Mapping[str, Any],
     names: Sequence[str],
     progress: Progress | None = None,
-    line: SolutionsOnLine | None = None,
+    found: SolutionsOnLine | None = None,
 ) -> Branches:
     """All branches of solutions on a line of a slice, with some quantities at each of their points.
 
@@ -64,8 +55,7 @@ def branch_diagram(
     along, at : as for `ptmcad.intervals`.
     names : as `ptmcad.ask.quantities.quantity` takes them.
     progress : called as progress("branches: interval", done, total).
-    line : `solutions_on_line` of the same slice and line, where other questions were asked of it
-        before.
+    found : the solutions on the same line, where other questions were asked of it before.
 
     Raises
     ------
@@ -73,82 +63,57 @@ def branch_diagram(
         For a name that the model does not have, and as the intervals do.
     """
     asked = [quantity(slice.model, name) for name in names]
-    varying, other, value = varying_axis(slice, along, at)
-    line = line or solutions_on_line(slice, along, at)
+    found = found or SolutionsOnLine(line_of(slice, along, at, free=True))
     branches: list[Branch] = []
     stretches = intervals(slice, along, at, digits=DIGITS).stretches
     for number, (low, high) in enumerate(stretches):
         if progress is not None:
             progress("branches: interval", number, len(stretches))
-        branches += _joined(line.samples(low, high), asked)
-    fixed = {other: value}
-    shown, units = (q.name for q in asked), (unit_of(q, slice) for q in asked)
-    undecided = tuple(line.undecided)
+        branches += _joined(found.samples(low, high), asked)
     return Branches(
         slice.name,
         slice.model,
-        slice.axes[varying],
-        fixed,
-        tuple(shown),
-        tuple(units),
+        found.line.along,
+        found.line.at,
+        tuple(q.name for q in asked),
+        tuple(unit_of(q, slice) for q in asked),
         tuple(branches),
-        undecided,
+        tuple(found.undecided),
     )
-
-
-def solutions_on_line(slice: Slice, along: str, at: Mapping[str, Any]) -> SolutionsOnLine:
-    """The line's solutions, for more than one `branch_diagram`.
-
-    Raises
-    ------
-    ConfigError
-        As `branch_diagram` does.
-    """
-    varying, _, value = varying_axis(slice, along, at)
-    return SolutionsOnLine(slice.model, on_line(slice, varying, value))
 
 
 class SolutionsOnLine:
     """The solutions on a line, each found when it is first asked for."""
 
-    def __init__(self, model: Model, parameters: Expressions, digits: int = DIGITS):
-        self.model, self.parameters, self.digits = model, parameters, digits
+    def __init__(self, line: Line, digits: int = DIGITS):
+        self.line, self.digits = line, digits
         self.undecided: list[Fraction] = []
-        self._known: dict[Fraction, Sample | None] = {}
+        self._known: dict[Fraction, tuple[Pose, ...] | None] = {}
 
-    def at(self, value: Fraction) -> Sample | None:
+    def at(self, value: Fraction) -> tuple[Pose, ...] | None:
         """The solutions at a value; None where they are not all known, or one is degenerate."""
         if value not in self._known:
-            self._known[value] = self._found(value)
+            found = poses_at(self.line.model, self.line.values(value), self.digits)
+            decided = found.status in (Status.EXACT, Status.CERTIFIED)
+            self.undecided += () if decided else (value,)
+            self._known[value] = found.equilibria if decided else None
         return self._known[value]
 
-    def _found(self, value: Fraction) -> Sample | None:
-        parameters = values_at(self.parameters, value)
-        found = poses_at(self.model, parameters, self.digits)
-        if found.status not in (Status.EXACT, Status.CERTIFIED):
-            self.undecided.append(value)
-            return None
-        return Sample(value, found.equilibria)
-
-    def samples(self, low: Fraction, high: Fraction) -> list[Sample]:
+    def samples(self, low: Fraction, high: Fraction) -> list[_Sample]:
         """Solutions at values in an interval, close enough to be joined."""
-        known = [
-            s
-            for value in values_between(low, high, SAMPLES, NEAR)
-            if (s := self.at(value)) is not None
-        ]
+        known = [(v, poses) for v in _values(low, high) if (poses := self.at(v)) is not None]
         result = known[:1]
         for sample in known[1:]:
             result += [*self._between(result[-1], sample, HALVINGS), sample]
         return result
 
-    def _between(self, first: Sample, second: Sample, depth: int) -> list[Sample]:
-        if depth == 0 or _pairs(first, second)[1]:
+    def _between(self, first: _Sample, second: _Sample, depth: int) -> list[_Sample]:
+        if depth == 0 or _pairs(first[1], second[1])[1]:
             return []
-        width = second.value - first.value
-        middle = self.at(short((first.value + second.value) / 2, width))
-        if middle is None:
+        value = _short((first[0] + second[0]) / 2, second[0] - first[0])
+        if (poses := self.at(value)) is None:
             return []
+        middle = (value, poses)
         return [
             *self._between(first, middle, depth - 1),
             middle,
@@ -156,41 +121,33 @@ class SolutionsOnLine:
         ]
 
 
-def values_between(
-    first: Fraction, last: Fraction, number: int, near: Iterable[Fraction]
-) -> list[Fraction]:
-    """Values on the way from the first to the last, closer to both, where branches turn.
-
-    Parameters
-    ----------
-    number : of parts.
-    near : parts of the way from each end where there is one, too.
-    """
-    parts = {1 - share if from_last else share for share in near for from_last in (False, True)}
-    parts |= {Fraction(round((1 - cos(pi * k / number)) * 2**19), 2**20) for k in range(1, number)}
-    return [short(first + part * (last - first), abs(last - first)) for part in sorted(parts)]
+def _values(low: Fraction, high: Fraction) -> list[Fraction]:
+    """Values in an interval, closer to both ends, where branches turn."""
+    parts = {part for share in NEAR for part in (share, 1 - share)}
+    parts |= {
+        Fraction(round((1 - cos(pi * k / SAMPLES)) * 2**19), 2**20) for k in range(1, SAMPLES)
+    }
+    return [_short(low + part * (high - low), high - low) for part in sorted(parts)]
 
 
-def short(value: Fraction, width: Fraction) -> Fraction:
+def _short(value: Fraction, width: Fraction) -> Fraction:
     """A number near a value with few digits, against the width of where it lies."""
     unit = 2**24 * (width.denominator // width.numerator + 1)
     return Fraction(round(value * unit), unit)
 
 
-def place_of(pose: Pose) -> _Place:
-    return (*map(float, pose.cosines_sines), *map(float, pose.reals))
-
-
-def _pairs(first: Sample, second: Sample) -> tuple[dict[int, int], bool]:
+def _pairs(first: Sequence[Pose], second: Sequence[Pose]) -> tuple[dict[int, int], bool]:
     """For the solutions at one value those at the next that are nearest, and whether no other comes
     near to that.
     """
-    before, after = ([(p.index, p.stable, place_of(p)) for p in s.poses] for s in (first, second))
+    before, after = (
+        [[float(x) for x in (*p.cosines_sines, *p.reals)] for p in s] for s in (first, second)
+    )
     distances = sorted(
-        (sum((a - b) ** 2 for a, b in zip(p[2], q[2], strict=True)) ** 0.5, i, j)
-        for i, p in enumerate(before)
-        for j, q in enumerate(after)
-        if p[:2] == q[:2]
+        (sum((a - b) ** 2 for a, b in zip(before[i], after[j], strict=True)) ** 0.5, i, j)
+        for i, p in enumerate(first)
+        for j, q in enumerate(second)
+        if (p.index, p.stable) == (q.index, q.stable)
     )
     pairs: dict[int, int] = {}
     lengths: dict[int, float] = {}
@@ -203,7 +160,7 @@ def _pairs(first: Sample, second: Sample) -> tuple[dict[int, int], bool]:
     return pairs, clear and len(pairs) == len(before) == len(after)
 
 
-def _joined(samples: Sequence[Sample], asked: Sequence[Quantity]) -> list[Branch]:
+def _joined(samples: Sequence[_Sample], asked: Sequence[Quantity]) -> list[Branch]:
     """The branches through the samples of an interval; one that finds no continuation ends."""
     if not samples:
         return []
@@ -212,13 +169,14 @@ def _joined(samples: Sequence[Sample], asked: Sequence[Quantity]) -> list[Branch
         return BranchPoint(value, tuple(of_pose(q, pose) for q in asked))
 
     done: list[tuple[Pose, list[BranchPoint]]] = []
-    growing = {k: (p, [point(samples[0].value, p)]) for k, p in enumerate(samples[0].poses)}
-    for first, second in itertools.pairwise(samples):
+    (value, poses), *_ = samples
+    growing = {k: (p, [point(value, p)]) for k, p in enumerate(poses)}
+    for (_, first), (value, second) in itertools.pairwise(samples):
         pairs, _ = _pairs(first, second)
         done += [branch for k, branch in growing.items() if k not in pairs]
         following = {j: growing[i] for i, j in pairs.items()}
-        for j, pose in enumerate(second.poses):
-            following.setdefault(j, (pose, []))[1].append(point(second.value, pose))
+        for j, pose in enumerate(second):
+            following.setdefault(j, (pose, []))[1].append(point(value, pose))
         growing = following
     done += growing.values()
     return [Branch(pose.stable, pose.index, tuple(points)) for pose, points in done]

@@ -19,7 +19,7 @@ point chooses that to which the mechanism snaps.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from fractions import Fraction
 from typing import Any
 
@@ -28,11 +28,9 @@ from flint import ctx
 
 from ptmcad.answer.intervals import Change
 from ptmcad.answer.paths import Fate, PathEnd, PathPoint, PosePath, PosePaths
-from ptmcad.ask.fields.course import Course
+from ptmcad.answer.poses import Pose
 from ptmcad.ask.fields.descent import descent
-from ptmcad.ask.fields.equations import Floats, apart
-from ptmcad.ask.fields.track import Track
-from ptmcad.ask.lines.diagram import Sample
+from ptmcad.ask.fields.equations import Floats, apart, state_at
 from ptmcad.ask.lines.landing import CriticalValue, beside, ends_from, landed
 from ptmcad.ask.lines.linesystem import DIGITS, LineSystem, guess_of, line_system
 from ptmcad.ask.lines.meeting import Meeting, PlacedSolution, what_meets
@@ -82,43 +80,10 @@ def pose_paths(
     Of a system that does not say what a stable solution is, all solutions are followed.
     """
     criterion, begin = slice.model.criterion, number_for("--path", start)
-    follower = _follower(slice, along, at, begin)
-    line = follower.family.line
-    stable = [k for k, pose in enumerate(follower.start.poses, 1) if criterion.works(pose.stable)]
-    if number is not None and number not in stable:
-        what = f"{len(stable)} {criterion.poses}"
-        raise ConfigError(
-            f"{number} is none of the {what} at {along} = {begin}, counted from 1", key="--pose"
-        )
-    found = []
-    chosen = stable if number is None else [number]
-    for done, k in enumerate(chosen):
-        if follower.family.lengths and progress is not None:
-            progress("paths: pose", done, len(chosen))
-        found.append(follower.path(k))
-    return PosePaths(
-        slice.name,
-        slice.model,
-        line.along,
-        line.at,
-        begin,
-        tuple(found),
-        moved(slice.model, line.parameters),
-    )
-
-
-def _follower(slice: Slice, along: str, at: Mapping[str, Any], start: Fraction) -> Follower:
-    """The line with its solutions at the start.
-
-    Raises
-    ------
-    ConfigError
-        As `pose_paths`.
-    """
     axis = slice.axes[varying_axis(slice, along, at)[0]]
-    if not axis.holds(start):
+    if not axis.holds(begin):
         raise ConfigError(
-            f"{start} is not inside the window of {along}, {axis.low} to {axis.high}", key="--path"
+            f"{begin} is not inside the window of {along}, {axis.low} to {axis.high}", key="--path"
         )
     enclosed = has_free_lengths(slice, along, at)
     if enclosed and open_chain(slice.model) is None:
@@ -130,14 +95,28 @@ def _follower(slice: Slice, along: str, at: Mapping[str, Any], start: Fraction) 
     line = line_of(slice, along, at, free=enclosed)
     critical = _changes_on(slice, line, enclosed=enclosed)
     family = line_system(line)
-    is_open = enclosed and any(_order(c.at, start) == 0 for c in critical)
-    here = None if is_open else family.solutions.at(start)
+    is_open = enclosed and any(_order(c.at, begin) == 0 for c in critical)
+    here = None if is_open else family.solutions.at(begin)
     if here is None:
         doubt = ", or not told from one" * enclosed
         raise ConfigError(
-            f"{along} = {start} is a critical value{doubt}: start beside it", key="--path"
+            f"{along} = {begin} is a critical value{doubt}: start beside it", key="--path"
         )
-    return Follower(slice, family, critical, here)
+    stable = [k for k, pose in enumerate(here, 1) if criterion.works(pose.stable)]
+    if number is not None and number not in stable:
+        what = f"{len(stable)} {criterion.poses}"
+        raise ConfigError(
+            f"{number} is none of the {what} at {along} = {begin}, counted from 1", key="--pose"
+        )
+    found = []
+    chosen = stable if number is None else [number]
+    for done, k in enumerate(chosen):
+        if family.lengths and progress is not None:
+            progress("paths: pose", done, len(chosen))
+        with within_doubles(slice):
+            found.append(_path(family, critical, begin, k, here[k - 1]))
+    rests = moved(slice.model, line.parameters)
+    return PosePaths(slice.name, slice.model, axis, line.at, begin, tuple(found), rests)
 
 
 def _changes_on(slice: Slice, line: Line, *, enclosed: bool) -> tuple[Change, ...]:
@@ -158,145 +137,136 @@ def _order(number: CriticalValue, value: Fraction) -> int:
     return number.compare(value)
 
 
-@dataclass(frozen=True, slots=True)
-class Follower:
-    """A line on which poses are followed from a value that is not critical.
+def _path(
+    family: LineSystem, critical: Sequence[Change], start: Fraction, number: int, pose: Pose
+) -> PosePath:
+    """One of the poses, counted from 1, in both directions.
 
-    Attributes
+    Parameters
     ----------
     critical : the critical values of the line in the window, in increasing order.
-    start : the solutions at that value.
+
+    Raises
+    ------
+    ConfigError
+        Where it is too near to a degenerate one.
     """
-
-    slice: Slice
-    family: LineSystem
-    critical: tuple[Change, ...]
-    start: Sample
-
-    def path(self, number: int) -> PosePath:
-        """One of the poses, counted from 1, in both directions.
-
-        Raises
-        ------
-        ConfigError
-            Where it is too near to a degenerate one.
-        """
-        family, start = self.family, self.start.value
-        box = at_value(family.branches, start, guess_of(self.start.poses[number - 1]))
-        if box is None:
-            raise ConfigError(
-                f"pose {number} at {family.line.along.name} = {start} is too near to a degenerate one to be followed "
-                f"at {BITS} bits: start farther away",
-                key="--path",
-            )
-        origin = Reached(start, box, box)
-        below = [c for c in reversed(self.critical) if _order(c.at, start) < 0]
-        left = self._one_way(below, origin, -1)
-        right = self._one_way([c for c in self.critical if _order(c.at, start) > 0], origin, 1)
-        reached = [*reversed(left[0]), origin, *right[0]]
-        sides = [family.sides(r.over.low, r.over.high, r.over.hull()) for r in reached]
-        return PosePath.of(
-            number, start, [self._point(r) for r in reached], (left[1], right[1]), sides
+    box = at_value(family.branches, start, guess_of(pose))
+    if box is None:
+        raise ConfigError(
+            f"pose {number} at {family.line.along.name} = {start} is too near to a degenerate one to be followed "
+            f"at {BITS} bits: start farther away",
+            key="--path",
         )
+    origin = Reached(start, box, box)
+    below = [c for c in reversed(critical) if _order(c.at, start) < 0]
+    left = _one_way(family, below, origin, -1)
+    right = _one_way(family, [c for c in critical if _order(c.at, start) > 0], origin, 1)
+    reached = [*reversed(left[0]), origin, *right[0]]
+    sides = [family.sides(r.over.low, r.over.high, r.over.hull()) for r in reached]
+    return PosePath.of(
+        number, start, [_point(family, r) for r in reached], (left[1], right[1]), sides
+    )
 
-    def _one_way(
-        self, numbers: Sequence[Change], origin: Reached, side: int
-    ) -> tuple[list[Reached], PathEnd]:
-        """Follow a branch in one direction through all critical values that do not concern it."""
-        family = self.family
-        window = family.line.along.width
-        edge = family.line.along.high if side > 0 else family.line.along.low
-        reached: list[Reached] = []
-        current = origin
-        for k, critical in enumerate(numbers):
-            number = critical.at
-            near, far = ends_from(number, side)
-            following = ends_from(numbers[k + 1].at, side)[0] if k + 1 < len(numbers) else edge
-            gap = min(abs(near - current.value), abs(following - far)) / 8
-            crossed, end = None, None
-            for least in _distances(family, gap):
-                while crossed is None and gap > least:
-                    after = beside(far, side, gap)
-                    steps, done = follow(
-                        family.branches, current, beside(near, -side, gap), window / _MIN_STEPS
-                    )
-                    reached += steps
-                    current = steps[-1] if steps else current
-                    if not done:
-                        return reached, PathEnd(Fate.UNDECIDED, number, self._point(current))
-                    crossed = bridge(family.branches, current, after)
-                    gap = gap / 4
-                if crossed is not None:
-                    break
-                end = self._meeting(critical, current, after)
-                if len(end.meeting) > 1 or end.fate is Fate.VANISH:
-                    break
-            if crossed is None:
-                assert end is not None
-                return reached, end
-            if (fate := _condition(family, crossed)) is not None:
-                return reached, PathEnd(fate, number, self._point(current))
-            reached.append(crossed)
-            current = crossed
-        steps, done = follow(
-            family.branches, current, beside(edge, -side, window / 10**6), window / _MIN_STEPS
-        )
-        reached += steps
-        return reached, PathEnd(
-            Fate.WINDOW if done else Fate.UNDECIDED,
-            edge,
-            self._point(steps[-1] if steps else current),
-        )
 
-    def _meeting(self, critical: Change, current: Reached, after: Fraction) -> PathEnd:
-        """Which solutions meet at a critical value that the path does not pass."""
-        family = self.family
-        stopped = PathEnd(Fate.UNDECIDED, critical.at, self._point(current))
-        found = what_meets(family, current, after) if critical.proved else None
-        if found is None:
-            return stopped
-        goal = self._goal(found, current, after) if _descends(family) else None
-        if len(found.meeting) == len(found.leaving) == 1 and goal is None:
-            return stopped  # it goes on, and has not been followed
-        met = replace(
-            stopped,
-            fate=Fate.VANISH,
-            meeting=found.meeting,
-            leaving=found.leaving,
-            among=found.among,
-        )
-        end = None if goal is None else landed(family, met, found, current, goal.place)
-        if end is None:
-            return met
-        several = sum(s.negative == 0 for s in found.beyond) > 1
-        return replace(end, fallen=end.fate is Fate.SNAP and several)
+def _one_way(
+    family: LineSystem, numbers: Sequence[Change], origin: Reached, side: int
+) -> tuple[list[Reached], PathEnd]:
+    """Follow a branch in one direction through all critical values that do not concern it."""
+    window = family.line.along.width
+    edge = family.line.along.high if side > 0 else family.line.along.low
+    reached: list[Reached] = []
+    current = origin
+    for k, critical in enumerate(numbers):
+        number = critical.at
+        near, far = ends_from(number, side)
+        following = ends_from(numbers[k + 1].at, side)[0] if k + 1 < len(numbers) else edge
+        gap = min(abs(near - current.value), abs(following - far)) / 8
+        crossed, end = None, None
+        for least in _distances(family, gap):
+            while crossed is None and gap > least:
+                after = beside(far, side, gap)
+                steps, done = follow(
+                    family.branches, current, beside(near, -side, gap), window / _MIN_STEPS
+                )
+                reached += steps
+                current = steps[-1] if steps else current
+                if not done:
+                    return reached, PathEnd(Fate.UNDECIDED, number, _point(family, current))
+                crossed = bridge(family.branches, current, after)
+                gap = gap / 4
+            if crossed is not None:
+                break
+            end = _meeting(family, critical, current, after)
+            if len(end.meeting) > 1 or end.fate is Fate.VANISH:
+                break
+        if crossed is None:
+            assert end is not None
+            return reached, end
+        if (fate := _condition(family, crossed)) is not None:
+            return reached, PathEnd(fate, number, _point(family, current))
+        reached.append(crossed)
+        current = crossed
+    steps, done = follow(
+        family.branches, current, beside(edge, -side, window / 10**6), window / _MIN_STEPS
+    )
+    reached += steps
+    return reached, PathEnd(
+        Fate.WINDOW if done else Fate.UNDECIDED,
+        edge,
+        _point(family, steps[-1] if steps else current),
+    )
 
-    def _goal(self, met: Meeting, current: Reached, after: Fraction) -> PlacedSolution | None:
-        """The stable pose beyond to which the energy descends: the only one, or that of steepest
-        descent.
-        """
-        stable = [s for s in met.beyond if s.negative == 0]
-        if len(stable) == 1:
-            return stable[0]
-        if not self.family.lengths or met.leaving.count(0) > 1:
-            return None
-        line = self.family.line
-        x, y = (line.at.get(axis.name, after) for axis in self.slice.axes)
-        track = Track(self.slice, Course(((x, y), (x, y)), (Fraction(0), Fraction(1))))
-        with within_doubles(self.slice):
-            way = descent(lambda at: track.state((x, y), at), _floats(current))
-        if way is None:
-            return None
-        gaps = (apart(way[-1], _floats(s.place), self.family.angles) for s in stable)
-        near = [s for s, gap in zip(stable, gaps, strict=True) if abs(gap).max() < _SAME]
-        return near[0] if len(near) == 1 else None
 
-    def _point(self, reached: Reached) -> PathPoint:
-        family = self.family
-        with ctx.workprec(BITS):
-            unknowns = tuple(map(enclosure_of, reached.point))
-        sides = family.sides(reached.value, reached.value, reached.point)
-        return PathPoint(reached.value, unknowns[: family.angles], unknowns[family.angles :], sides)
+def _meeting(family: LineSystem, critical: Change, current: Reached, after: Fraction) -> PathEnd:
+    """Which solutions meet at a critical value that the path does not pass."""
+    stopped = PathEnd(Fate.UNDECIDED, critical.at, _point(family, current))
+    found = what_meets(family, current, after) if critical.proved else None
+    if found is None:
+        return stopped
+    goal = _goal(family, found, current, after) if _descends(family) else None
+    if len(found.meeting) == len(found.leaving) == 1 and goal is None:
+        return stopped  # it goes on, and has not been followed
+    met = replace(
+        stopped,
+        fate=Fate.VANISH,
+        meeting=found.meeting,
+        leaving=found.leaving,
+        among=found.among,
+    )
+    end = None if goal is None else landed(family, met, found, current, goal.place)
+    if end is None:
+        return met
+    several = sum(s.negative == 0 for s in found.beyond) > 1
+    return replace(end, fallen=end.fate is Fate.SNAP and several)
+
+
+def _goal(
+    family: LineSystem, met: Meeting, current: Reached, after: Fraction
+) -> PlacedSolution | None:
+    """The stable pose beyond to which the energy descends: the only one, or that of steepest
+    descent.
+    """
+    stable = [s for s in met.beyond if s.negative == 0]
+    if len(stable) == 1:
+        return stable[0]
+    if not family.lengths or met.leaving.count(0) > 1:
+        return None
+    model = family.line.model
+    values = {name: float(value) for name, value in family.line.values(after).items()}
+    way = descent(lambda at: state_at(model, values, at), _floats(current))
+    if way is None:
+        return None
+    gaps = (apart(way[-1], _floats(s.place), family.angles) for s in stable)
+    near = [s for s, gap in zip(stable, gaps, strict=True) if abs(gap).max() < _SAME]
+    return near[0] if len(near) == 1 else None
+
+
+def _point(family: LineSystem, reached: Reached) -> PathPoint:
+    with ctx.workprec(BITS):
+        unknowns = tuple(map(enclosure_of, reached.point))
+    sides = family.sides(reached.value, reached.value, reached.point)
+    return PathPoint(reached.value, unknowns[: family.angles], unknowns[family.angles :], sides)
 
 
 def _distances(family: LineSystem, gap: Fraction) -> tuple[Fraction, ...]:

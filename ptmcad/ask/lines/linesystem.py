@@ -85,7 +85,7 @@ def line_system(line: Line) -> LineSystem:
         else _polynomial(line, formulas),
         formulas.energy(relaxed) if relaxed else formulas.smooth,
         tuple(formulas.springs[k].length for k in relaxed),
-        SolutionsOnLine(line.model, line.parameters, DIGITS),
+        SolutionsOnLine(line, DIGITS),
     )
 
 

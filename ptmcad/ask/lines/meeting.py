@@ -38,13 +38,21 @@ _MAX_DEPTH = 60
 
 
 class PlacedSolution(NamedTuple):
-    """A solution at one value: its place, and how many negative eigenvalues it has.
+    """A solution on one side of a critical value, as seen from a branch.
 
-    Without a potential the number is 0 for a stable solution and 1 for another.
+    Attributes
+    ----------
+    negative : the number of negative eigenvalues; without a potential 0 where it is stable, else 1.
+    ahead : whether it is on the far side.
+    shifted : the unknowns, angles less than a turn from the branch's.
+    sign : of the Jacobian's determinant; 0 where it is not decided.
     """
 
     place: Reached
     negative: int
+    ahead: bool
+    shifted: Vector
+    sign: int
 
 
 class Meeting(NamedTuple):
@@ -76,29 +84,17 @@ it reflects.
 """
 
 
-class _Member(NamedTuple):
-    """A solution that is not bridged."""
-
-    solution: PlacedSolution
-    ahead: bool
-    shifted: Vector
-    sign: int
-
-
 def what_meets(family: LineSystem, current: Reached, after: Fraction) -> Meeting | None:
     """What a branch meets at the only critical value between its place and another value; None
     where not proved.
     """
-    before, beyond = _solutions(family, current.value), _solutions(family, after)
+    before, beyond = (_solutions(family, current, value) for value in (current.value, after))
     if before is None or beyond is None:
         return None
     unmatched = _unmatched(family, current, after, before, beyond)
-    if unmatched is None:
+    if unmatched is None or not all(m.sign for m in unmatched):
         return None
-    members = [_member(family, current, s, ahead) for s, ahead in unmatched]
-    if not all(m.sign for m in members):
-        return None
-    region = _region(family, current, after, members)
+    region = _region(family, current, after, unmatched)
     if region is None:
         return _without_region(family, unmatched, tuple(beyond))
     group, box = region
@@ -110,8 +106,7 @@ def what_meets(family: LineSystem, current: Reached, after: Fraction) -> Meeting
         return None
     chosen = [group[k] for k in sorted(frozenset().union(*classes))]
     met, left = (
-        tuple(sorted(m.solution.negative for m in chosen if m.ahead is side))
-        for side in (False, True)
+        tuple(sorted(m.negative for m in chosen if m.ahead is side)) for side in (False, True)
     )
     own = next(iter(classes)) if len(classes) == 1 else frozenset()
     kept = (lines for images, lines in symmetries if own and {images[k] for k in own} == own)
@@ -119,18 +114,28 @@ def what_meets(family: LineSystem, current: Reached, after: Fraction) -> Meeting
     return Meeting(met, left, len(classes) > 1, tuple(beyond), box, fixed)
 
 
-def _solutions(family: LineSystem, value: Fraction) -> list[PlacedSolution] | None:
+def _solutions(
+    family: LineSystem, current: Reached, value: Fraction
+) -> list[PlacedSolution] | None:
     """All solutions at a value; None when they are not all known, or one was not enclosed."""
-    sample = family.solutions.at(value)
-    if sample is None:
+    if (poses := family.solutions.at(value)) is None:
         return None
     found = []
-    for pose in sample.poses:
+    for pose in poses:
         place = at_value(family.branches, value, guess_of(pose))
         if place is None:
             return None
         rank = int(pose.stable is not True) if pose.index is None else pose.index
-        found.append(PlacedSolution(Reached(value, place, place), rank))
+        reached = Reached(value, place, place)
+        with ctx.workprec(BITS):
+            shifted = []
+            for k, (a, b) in enumerate(zip(reached.point, current.point, strict=True)):
+                turns = round(float(((b - a) / (2 * arb.pi())).mid())) if k < family.angles else 0
+                shifted.append(a + 2 * turns * arb.pi())
+            column = arb_mat(len(shifted), 1, reached.point)
+            det = family.branches.jacobian(ball_of(value), column).det()
+        ahead, sign = value != current.value, 1 if det > 0 else -1 if det < 0 else 0
+        found.append(PlacedSolution(reached, rank, ahead, tuple(shifted), sign))
     return found
 
 
@@ -140,20 +145,18 @@ def _unmatched(
     after: Fraction,
     before: Sequence[PlacedSolution],
     beyond: Sequence[PlacedSolution],
-) -> list[tuple[PlacedSolution, bool]] | None:
-    """The solutions that no tube leads across, the branch's own first, and whether each is on the
-    far side.
-    """
+) -> list[PlacedSolution] | None:
+    """The solutions that no tube leads across, the branch's own first."""
     own = [s for s in before if _close(family, s.place.point, current.point)]
     if len(own) != 1:
         return None
-    left, lost = list(beyond), [(own[0], False)]
+    left, lost = list(beyond), own
     for solution in before:
-        if solution is own[0]:
+        if solution is lost[0]:
             continue
         across = bridge(family.branches, solution.place, after)
         if across is None:
-            lost.append((solution, False))
+            lost.append(solution)
             continue
         images = [
             k for k, image in enumerate(left) if _close(family, across.point, image.place.point)
@@ -164,7 +167,7 @@ def _unmatched(
             p < 0 for p in family.values_at(family.formulas.inequalities, across)
         ):
             return None
-    return lost + [(solution, True) for solution in left]
+    return lost + left
 
 
 def _close(family: LineSystem, first: Vector, second: Vector) -> bool:
@@ -175,48 +178,32 @@ def _close(family: LineSystem, first: Vector, second: Vector) -> bool:
         return all(d.contains(0) for d in (*turned, *apart[family.angles :]))
 
 
-def _member(family: LineSystem, current: Reached, solution: PlacedSolution, ahead: bool) -> _Member:
-    """A solution with its angles less than a turn from the branch's, and the sign of the Jacobian's
-    determinant.
-    """
-    with ctx.workprec(BITS):
-        shifted = []
-        for k, (a, b) in enumerate(zip(solution.place.point, current.point, strict=True)):
-            turns = round(float(((b - a) / (2 * arb.pi())).mid())) if k < family.angles else 0
-            shifted.append(a + 2 * turns * arb.pi())
-        value = solution.place.value
-        size = len(shifted)
-        place = arb_mat(size, 1, solution.place.point)
-        det = family.branches.jacobian(ball_of(value), place).det()
-        return _Member(solution, ahead, tuple(shifted), 1 if det > 0 else -1 if det < 0 else 0)
-
-
 def _without_region(
     family: LineSystem,
-    unmatched: Sequence[tuple[PlacedSolution, bool]],
+    unmatched: Sequence[PlacedSolution],
     beyond: tuple[PlacedSolution, ...],
 ) -> Meeting | None:
     """What can be said without a region: a branch vanishes where nothing is left that it may have
     become.
     """
     excluded = family.formulas.inequalities or family.lengths
-    if excluded or any(ahead for _, ahead in unmatched):
+    if excluded or any(s.ahead for s in unmatched):
         return None
     if len(unmatched) > 1 and not family.is_on_torus:
         return None  # some may go to infinity
-    return Meeting(tuple(sorted(s.negative for s, _ in unmatched)), (), len(unmatched) > 2, beyond)
+    return Meeting(tuple(sorted(s.negative for s in unmatched)), (), len(unmatched) > 2, beyond)
 
 
 def _region(
-    family: LineSystem, current: Reached, after: Fraction, members: Sequence[_Member]
-) -> tuple[list[_Member], Vector] | None:
+    family: LineSystem, current: Reached, after: Fraction, members: Sequence[PlacedSolution]
+) -> tuple[list[PlacedSolution], Vector] | None:
     """The fewest solutions around the branch's own, the first, in a region that none enters or
     leaves.
     """
     with ctx.workprec(BITS):
         own = members[0]
 
-        def distance(m: _Member) -> float:
+        def distance(m: PlacedSolution) -> float:
             return max(float(abs(a - b).mid()) for a, b in zip(m.shifted, own.shifted, strict=True))
 
         ordered = sorted(members, key=distance)
@@ -247,8 +234,8 @@ def _isolates(
     box: Sequence[Range],
     start: Fraction,
     end: Fraction,
-    group: Sequence[_Member],
-    others: Sequence[_Member],
+    group: Sequence[PlacedSolution],
+    others: Sequence[PlacedSolution],
 ) -> bool:
     """Whether a box holds the group and none of the others, and its boundary no solution from one
     value to another.
@@ -294,7 +281,9 @@ def _outside(family: LineSystem, point: Vector, box: Sequence[Range]) -> bool:
     )
 
 
-def _symmetries(family: LineSystem, group: Sequence[_Member], after: Fraction) -> list[_Symmetry]:
+def _symmetries(
+    family: LineSystem, group: Sequence[PlacedSolution], after: Fraction
+) -> list[_Symmetry]:
     """How the involutions that keep all points of the line, and a reflection of all angles, permute
     the group.
     """
@@ -327,7 +316,10 @@ def _symmetries(family: LineSystem, group: Sequence[_Member], after: Fraction) -
 
 
 def _reflections(
-    family: LineSystem, group: Sequence[_Member], places: Sequence[Sequence[arb]], after: Fraction
+    family: LineSystem,
+    group: Sequence[PlacedSolution],
+    places: Sequence[Sequence[arb]],
+    after: Fraction,
 ) -> list[_Symmetry]:
     """How the reflection of all angles at once, whose line may turn with the parameter, permutes
     the group.
@@ -335,9 +327,7 @@ def _reflections(
     if family.line.model.reals or family.lengths:
         return []
     mirror = mirror_of(on_slice(*system_on(family.line)).equations, family.angles)
-    values = [
-        m.solution.place.value for m in group
-    ]  # the first is the branch's own, on the near side
+    values = [m.place.value for m in group]  # the first is the branch's own, on the near side
     if mirror is None or mirror.angle(min(values[0], after), max(values[0], after)) is None:
         return []
     moved = []
@@ -351,7 +341,7 @@ def _reflections(
 
 
 def _images(
-    group: Sequence[_Member], places: Sequence[Sequence[arb]], moved: Sequence[Sequence[arb]]
+    group: Sequence[PlacedSolution], places: Sequence[Sequence[arb]], moved: Sequence[Sequence[arb]]
 ) -> tuple[int, ...] | None:
     """Which of the group is where each one is moved to; None where some are moved out of it, or it
     is not clear.
@@ -369,7 +359,7 @@ def _images(
 
 
 def _own_classes(
-    group: Sequence[_Member], symmetries: Sequence[Sequence[int]]
+    group: Sequence[PlacedSolution], symmetries: Sequence[Sequence[int]]
 ) -> set[frozenset[int]]:
     """With which of the group, by number, the first may be where it ends: by each grouping that is
     possible.

@@ -11,12 +11,13 @@ be decided in a row is said there.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
+from dataclasses import replace
 from fractions import Fraction
 from itertools import chain
 
-from ptmcad.answer.intervals import CountIntervals, operation_spans
-from ptmcad.answer.widths import OperationWidths, WidthRow
+from ptmcad.answer.intervals import CountIntervals
+from ptmcad.answer.widths import Maximum, OperationWidths, WidthRow
 from ptmcad.errors import A_SLICE, ConfigError, HypothesisError, expect, quoted
 from ptmcad.options import Progress
 from ptmcad.question.slice import Axis, Slice
@@ -52,50 +53,35 @@ def operation_widths(
         When the slice is degenerate or leaves the domain of the geometry.
     """
     axis, over = _axes(slice, along, rows)
+    maxima: tuple[Maximum, ...] = ()
     if slice.has_free_lengths:
-        return _enclosed(slice, axis, over, rows, digits, progress)
-    from ptmcad.exact.ranges.exactline import intervals
-    from ptmcad.exact.ranges.rangestrips import strips
-    from ptmcad.exact.ranges.width import widest
+        from ptmcad.ask.lines.along import certified_intervals, least_number
 
-    found = strips(slice, along)
-    table = tuple(
-        WidthRow(value, () if line is None else line.operation, remark=remark)
-        for value, line, remark in _rows(
-            over, rows, lambda value: intervals(slice, along, {over.name: value}, found.working)
+        found = _rows(
+            over,
+            rows,
+            progress,
+            lambda v: certified_intervals(slice, along, {over.name: v}, digits),
         )
+        lines = (line.intervals for _, line, _ in found if line is not None)
+        working = least_number(slice.model, chain.from_iterable(lines))
+    else:
+        from ptmcad.exact.ranges.exactline import intervals
+        from ptmcad.exact.ranges.rangestrips import strips
+        from ptmcad.exact.ranges.width import widest
+
+        known = strips(slice, along)
+        working = known.working
+        found = _rows(over, rows, None, lambda v: intervals(slice, along, {over.name: v}, working))
+        maxima = widest(slice, along, known)
+    table = []
+    for value, line, remark in found:
+        operation = () if line is None else replace(line, working=working).operation
+        undecided = line is not None and any(i.working is None for i in line.intervals)
+        table.append(WidthRow(value, operation, undecided, remark))
+    return OperationWidths(
+        slice.name, axis, over, tuple(table), maxima, slice.model, working, slice.has_free_lengths
     )
-    maxima = widest(slice, along, found)
-    return OperationWidths(slice.name, axis, over, table, maxima, slice.model, found.working)
-
-
-def _enclosed(
-    slice: Slice, axis: Axis, over: Axis, rows: int, digits: int, progress: Progress | None
-) -> OperationWidths:
-    """The rows of a slice whose springs have free lengths."""
-    from ptmcad.ask.lines.along import certified_intervals, least_number
-
-    found: list[tuple[Fraction, CountIntervals | None, str]] = []
-    for row in _rows(
-        over,
-        rows,
-        lambda value: certified_intervals(slice, axis.name, {over.name: value}, digits),
-    ):
-        found.append(row)
-        if progress is not None:
-            progress("rows", len(found), rows)
-    lines = [() if line is None else line.intervals for _, line, _ in found]
-    working = least_number(slice.model, chain.from_iterable(lines))
-    table = tuple(
-        WidthRow(
-            value,
-            operation_spans(line, lambda number: number >= working),
-            any(i.working is None for i in line),
-            remark,
-        )
-        for (value, _, remark), line in zip(found, lines, strict=True)
-    )
-    return OperationWidths(slice.name, axis, over, table, (), slice.model, working, enclosed=True)
 
 
 def _axes(slice: Slice, along: str, rows: int) -> tuple[Axis, Axis]:
@@ -114,12 +100,16 @@ def _axes(slice: Slice, along: str, rows: int) -> tuple[Axis, Axis]:
 
 
 def _rows(
-    over: Axis, rows: int, line: Callable[[Fraction], CountIntervals]
-) -> Iterator[tuple[Fraction, CountIntervals | None, str]]:
+    over: Axis, rows: int, progress: Progress | None, line: Callable[[Fraction], CountIntervals]
+) -> list[tuple[Fraction, CountIntervals | None, str]]:
     """Values of an axis at equal distances, the line at each, or why it has no answer."""
+    found: list[tuple[Fraction, CountIntervals | None, str]] = []
     for k in range(1, rows + 1):
         value = over.at(Fraction(k, rows + 1))
         try:
-            yield value, line(value), ""
+            found.append((value, line(value), ""))
         except HypothesisError as error:
-            yield value, None, str(error)
+            found.append((value, None, str(error)))
+        if progress is not None:
+            progress("rows", k, rows)
+    return found

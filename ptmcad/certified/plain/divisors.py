@@ -73,7 +73,7 @@ def absolute(polynomial: Expression, axes: tuple[Axis, Axis]) -> Expression | No
     """
     x, y = ((axis.low + axis.high) / 2 for axis in axes)
     found = polynomial if polynomial.evaluate(x, y) > 0 else -polynomial
-    return found if decide(found, axes, Need.POSITIVE) is PROVED else None
+    return found if decide(found, axes, Need.POSITIVE) == PROVED else None
 
 
 def largest_factor(polynomials: Iterable[TrigonometricPolynomial]) -> Expression:

@@ -32,7 +32,7 @@ from ptmcad.text.syntax import did_you_mean
 
 
 @dataclass(frozen=True, slots=True)
-class Spaced:
+class _Spaced:
     """``number`` values, each a ``step`` from the one before; the step may be negative."""
 
     first: Fraction
@@ -46,7 +46,7 @@ class Spaced:
         return self.first + number * self.step
 
 
-Values = Spaced | tuple[Fraction, ...]
+Values = _Spaced | tuple[Fraction, ...]
 Product = Mapping[str, Values]
 """Every combination of the parameters' values."""
 
@@ -215,7 +215,7 @@ def _swept(entry: Node, record: Record) -> Values:
         )
     found = _values(entry)
     if name in record.model.parameters:
-        ends = (found[0], found[len(found) - 1]) if isinstance(found, Spaced) else found
+        ends = (found[0], found[len(found) - 1]) if isinstance(found, _Spaced) else found
         check_number(name, record.model.kind(name), min(ends), entry.place)
     return found
 
@@ -280,7 +280,7 @@ _RANGE = _READ.narrowed(
 )
 
 
-def _range(entry: Node) -> Spaced:
+def _range(entry: Node) -> _Spaced:
     """The values of a range with its ends and the step between two values, or the number of values."""
     said = _RANGE.read(entry)
     low, high, step, steps = said.values()
@@ -297,9 +297,9 @@ def _range(entry: Node) -> Spaced:
         if ((high - low) / signed).denominator != 1:
             problem = f"steps of {step} from {low} do not end at {high}: {high - low} is no multiple of {step}"
             raise place.fault(problem)
-        found = Spaced(low, signed, int((high - low) / signed) + 1)
+        found = _Spaced(low, signed, int((high - low) / signed) + 1)
     else:
-        place, found = entry.at("steps"), Spaced(low, (high - low) / (steps - 1), steps)
+        place, found = entry.at("steps"), _Spaced(low, (high - low) / (steps - 1), steps)
     if found.number > MAX_MEMBERS:
         raise place.fault(f"has {found.number} values, more than {MAX_MEMBERS}")
     return found

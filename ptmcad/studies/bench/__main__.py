@@ -21,7 +21,7 @@ from ptmcad.ask.checking import check
 from ptmcad.errors import PtmcadError
 from ptmcad.process.output import check_writable, text_writer, write_files
 from ptmcad.question.config import load
-from ptmcad.question.savings import ALL, SAVINGS, Engine
+from ptmcad.question.savings import ALL, SAVINGS
 from ptmcad.question.slice import Slice
 from ptmcad.studies.bench import growth
 from ptmcad.studies.bench.harness import Job, classification, made_with, summary, table, turns
@@ -82,9 +82,8 @@ def ablation(options: argparse.Namespace) -> pd.DataFrame:
     """
     tables = []
     for path, slice in slices_of(options.names).items():
-        savings = [
-            s.name for s in SAVINGS if (s.engine is Engine.CERTIFIED) == slice.has_free_lengths
-        ]
+        engines = ("certified",) if slice.has_free_lengths else ("exact", "any")
+        savings = [name for engine in engines for name in SAVINGS[engine]]
         more = LIMITS if slice.has_free_lengths else ()
         tables.append(_without(path, slice.name, slice.name, [*savings, ALL], more, options))
         if not slice.has_free_lengths:

@@ -15,13 +15,12 @@ from dataclasses import dataclass
 from enum import Enum
 from functools import cache, partial
 from importlib import import_module
-from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
 import yaml
 
-from ptmcad.extras import Extra
+from ptmcad.extras import missing
 from ptmcad.studies.paper.statements import holds
 
 TEXTS = Path(__file__).with_name("claims.yaml")
@@ -89,11 +88,8 @@ def judge(name: str, text: Text) -> Claim:
     section = name.partition("-")[0]
     section = {"a": "abstract", "c": "conclusions"}.get(section, section)
     claim = partial(Claim, name, section, text["quotation"], text["statement"])
-    extra = Extra[text["needs"]] if "needs" in text else None
-    if extra is not None and find_spec(extra.package) is None:
-        return claim(
-            verdict=Verdict.NOT_CHECKED, reason=f"it cannot be computed here: {extra.message}"
-        )
+    if "needs" in text and (why := missing(text["needs"])):
+        return claim(verdict=Verdict.NOT_CHECKED, reason=f"it cannot be computed here: {why}")
     facts = dict(_facts(text))
     printed, shown = (_hold(text, key, facts) for key in ("printed", "shown"))
     evidence, right = _sentences(text, "evidence", facts), "".join(_sentences(text, "right", facts))

@@ -15,7 +15,7 @@ from typing import Any
 from ptmcad.answer.design import BestDesign, Evaluation
 from ptmcad.ask.members import in_common
 from ptmcad.errors import ConfigError, LimitReached
-from ptmcad.extras import Extra, require
+from ptmcad.extras import require
 from ptmcad.options import Options, Progress
 from ptmcad.question.config.designed import Aim, Design
 from ptmcad.question.config.designkey import design_from
@@ -127,7 +127,7 @@ class _DesignSearch:
         if maxima is not None:
             self.value_of = evaluator(asked)
             return self._exactly(maxima, evaluations or EVALUATIONS)
-        require(Extra.design)
+        require("design")
         self.report("discriminant variety", 0, 1)
         bounder = bounder_of(asked, tolerance)
         space = bounder.space if isinstance(bounder, Lengths) else None

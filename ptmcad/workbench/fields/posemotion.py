@@ -24,7 +24,7 @@ import numpy as np
 from ptmcad.answer.boundaries import NONE
 from ptmcad.answer.motion import Fall, Motion, Place, Step
 from ptmcad.answer.regionmap import RegionMap, Status
-from ptmcad.ask.fields.course import Course, corners_of
+from ptmcad.ask.fields.course import corners_of
 from ptmcad.ask.fields.descent import descent
 from ptmcad.ask.fields.equations import Floats, apart, unknowns_of
 from ptmcad.ask.fields.track import MIN_STEP, Track, followed
@@ -94,7 +94,7 @@ def motion_of(
     choice = choice_of(pose, result.slice.model)
     corners = corners_of(result.slice, path)
     with within_doubles(result.slice):
-        walk = Track(result.slice, Course.through(result.slice, corners))
+        walk = Track(result.slice, corners)
         stops = _stops(result, walk, frames)
         start = _start(result, stops[0][1].at, choice)
         steps, falls, end = _walked(result, walk, stops, start, max(12, frames // 3), progress)
@@ -122,11 +122,11 @@ def _stops(result: RegionMap, walk: Track, frames: int) -> list[_Stop]:
         share = Fraction(k, frames - 1)
         inward = 1 if k < frames / 2 else -1
         for moved in (share + inward * n * _BESIDE for n in range(4)):
-            point, cell = walk.course.at(moved), _cell(result, walk.course.at(moved))
+            point, cell = walk.place(moved), _cell(result, walk.place(moved))
             if cell != NONE:
                 break
         else:
-            moved, point = share, walk.course.at(share)
+            moved, point = share, walk.place(share)
         shares.append(moved)
         points.append(point)
         cells.append(cell)
@@ -207,9 +207,7 @@ def _walked(
             if leaves:
                 return steps, falls, f"{where} the pose leaves what the inequalities allow"
             beyond = min(done + MIN_STEP, until)
-            before, after = (
-                _cell(result, walk.course.at(Fraction(share))) for share in (done, beyond)
-            )
+            before, after = (_cell(result, walk.place(share)) for share in (done, beyond))
             if before == after != NONE:
                 raise PtmcadError(
                     f"the pose was lost at {100 * done:.6g} % of the path, in the middle of a region"
@@ -240,7 +238,7 @@ def _walked(
 
 
 def _where(walk: Track, share: float) -> str:
-    at = walk.course.at(Fraction(share))
+    at = walk.place(share)
     return ", ".join(
         f"{n} = {float(v):.6g}" for n, v in zip(walk.slice.axis_names, at, strict=True)
     )
@@ -273,7 +271,7 @@ def _lengths(way: Floats) -> Floats:
 
 def _fallen(walk: Track, share: float, way: Floats, places: Floats) -> list[Step]:
     """The steps of a fall, at these distances from its start."""
-    point = walk.course.at(Fraction(share))
+    point = walk.place(share)
     taken = np.array([np.interp(places, _lengths(way), along) for along in way.T]).T
     return [_seen(walk, Step(share, point, (), None, True), at) for at in taken]
 

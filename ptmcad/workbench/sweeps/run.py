@@ -24,7 +24,7 @@ from typing import TYPE_CHECKING, Any
 from ptmcad.answer.sweep import State, Sweep
 from ptmcad.ask.classification import prepare
 from ptmcad.errors import ConfigError, LimitReached, OutputError, PtmcadError
-from ptmcad.extras import Extra, require
+from ptmcad.extras import require
 from ptmcad.options import Progress
 from ptmcad.question.config.sweeps import Sweeping, sweep_from
 from ptmcad.question.shipped import RecordSource
@@ -90,7 +90,7 @@ def sweep(
     question = sweep_from(config)
     wanted = wanted_of(question, wanted)
     if scheduler is not None:  # whether or not there is anything left to compute
-        require(Extra.distributed, key="--scheduler")
+        require("distributed", key="--scheduler")
     place = Path(f"{question.name}-sweep") if folder is None else Path(folder)
     with opened(place) as index:
         facts = {
