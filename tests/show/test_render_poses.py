@@ -35,7 +35,6 @@ from ptmcad.show.render.sketch import (
     BAR_WIDTHS,
     PIN,
     SPIRAL,
-    Scene,
     arrow_lengths,
     frame_of,
 )
@@ -102,7 +101,7 @@ def test_stable_ones_come_first_and_are_strong() -> None:
         next(a.get_color() for a in axes.get_children() if str(a.get_gid()).endswith("bar-A1A3"))
         for axes in figure.axes
     ]
-    assert colours == [STRONG.bars[0]] * 2 + [PALE.bars[0]] * 4
+    assert colours == [STRONG["bar-0"]] * 2 + [PALE["bar-0"]] * 4
     texts = [t.get_text() for t in figure.texts]
     kinds = ["stable (minimum)"] * 2 + ["saddle"] * 3 + ["maximum"]
     assert [t for t in texts if t[0].isdigit() and "  " in t[:3]] == [
@@ -126,7 +125,7 @@ def labels_are_clear(found: Poses) -> None:
         return
     frame, arrows = frame_of(found.equilibria), arrow_lengths(found)
     for pose in found.equilibria:
-        seen = Scene(found.model, frame, arrows).of(pose)
+        seen = frame.sketch(found.model, pose, arrows)
         strokes = [Stroke(a, b, w / 2) for (a, b), w in zip(seen.bars, BAR_WIDTHS, strict=True)]
         strokes += [s for line in seen.coils.values() for s in polyline(line, 0.4)]
         strokes += [Stroke(start, end, 2.0) for _, start, end in seen.arrows]
@@ -150,7 +149,7 @@ def test_springs_on_bars_are_drawn_aside() -> None:
     flat = [p for p in found.equilibria if p.flat]
     assert len(flat) == 4
     for pose in flat:
-        seen = Scene(found.model, frame, {}).of(pose)
+        seen = frame.sketch(found.model, pose, {})
         middles = [
             np.mean(line[1:-1], axis=0)[1] - seen.nodes["A1"][1] for line in seen.coils.values()
         ]

@@ -24,9 +24,8 @@ from ptmcad.show.render.inches import stroke, write_lines
 from ptmcad.show.render.labels import Box, Position, Stroke, crosses
 from ptmcad.show.render.layout import Layout
 from ptmcad.show.render.mappicture import MapDrawing, left_out
-from ptmcad.show.render.mechanism import STRONG, draw_sketch
-from ptmcad.show.render.posepicture import pose_axes
-from ptmcad.show.render.sketch import Scene, arrow_lengths
+from ptmcad.show.render.posepicture import draw_pose
+from ptmcad.show.render.sketch import arrow_lengths
 from ptmcad.show.style import MAX_SIDE, PictureStyle, Size, styled
 
 DrawnMap = tuple[Figure, tuple[str, ...]]
@@ -163,12 +162,12 @@ def _draw_block(figure: Figure, block: Block, corner: Position, style: PictureSt
     top -= line * len(block.head)
     mechanism = block.poses.model.whole
     assert mechanism is not None  # others have been refused
-    scene = Scene(mechanism, frame, arrow_lengths(block.poses))
+    arrows = arrow_lengths(block.poses)
     for k, pose in enumerate(block.shown):
         row, column = divmod(k, block.across)
         at = (left + column * frame.width / 72, top - (row + 1) * frame.height / 72)
-        panel = pose_axes(figure, at, frame, f"pose-{block.number}-{k + 1}", strong=False)
-        draw_sketch(panel, scene.of(pose), STRONG, f"pose-{block.number}-{k + 1}-")
+        seen = frame.sketch(mechanism, pose, arrows)
+        draw_pose(figure, seen, at, f"pose-{block.number}-{k + 1}", strong=True, framed=False)
 
 
 def _lead(
