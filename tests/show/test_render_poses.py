@@ -375,7 +375,7 @@ def test_torsion_springs_are_spirals_at_their_joints_in_every_pose() -> None:
         assert {gid for gid in lines if "torsion" in gid} == {
             f"pose-{number}-torsion-{k}" for k in (1, 2, 4)
         }
-        nodes = scene.nodes(pose)
+        nodes = scene.sketch(jaw().model, pose, {}).nodes
         for k, joint, arm, least in (
             (1, "P", "Q", PIN),
             (2, "O", "P", PIN),

@@ -317,8 +317,8 @@ def test_what_is_written_for_the_report_is_positive(tmp_path: Path) -> None:
     path = tmp_path / "fig4.error-time.json"
     path.write_text(curve_file(STUDY), encoding="utf-8")
     found = read_error_curve(path)
-    assert [len(s.points) for s in found.series] == [2, 3]
-    assert found.series[0].points[1] == (0.4, 2e-9)
+    assert [len(points) for _, points in found.series] == [2, 3]
+    assert found.series[0][1][1] == (0.4, 2e-9)
 
 
 def test_page_tells_what_is_left_out_and_what_is_claimed() -> None:

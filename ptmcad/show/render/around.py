@@ -20,6 +20,7 @@ from ptmcad.errors import ConfigError
 from ptmcad.show.drawable import no_drawing
 from ptmcad.show.render.blocks import LINE, Block, PointPoses, arranged, sized
 from ptmcad.show.render.colours import INK
+from ptmcad.show.render.fitting import larger
 from ptmcad.show.render.inches import stroke, write_lines
 from ptmcad.show.render.labels import Box, Position, Stroke, crosses
 from ptmcad.show.render.layout import Layout
@@ -35,8 +36,6 @@ _COVERED, _HALF = 10.0, 0.035
 """Inches of a line that are as bad as a text that it covers, and half a line's width with a little
 space.
 """
-_STEPS, _STEP = 60, 1.05
-"""How sizes are tried that would do."""
 
 
 def draw_around(drawing: MapDrawing, points: Sequence[PointPoses]) -> DrawnMap:
@@ -71,21 +70,16 @@ def _remedy(drawing: MapDrawing, points: Sequence[PointPoses]) -> str:
     style = drawing.style
     if style.size is None or style.wide is not None:
         return "give fewer points, or a size of your own"
-    wide, tall = style.size
-    for step in range(1, _STEPS):
-        larger = (
-            styled(style, size=(wide * _STEP**step, tall * _STEP**step))
-            if wide * _STEP**step < MAX_SIDE
-            else None
-        )
-        if larger is None or larger.size is None:
+    for wide, tall in larger(style.size):
+        if wide >= MAX_SIDE:
             break
+        tried = styled(style, size=(wide, tall))
         try:
-            inner = sized(arranged(drawing.result, points, larger), larger)[1]
+            inner = sized(arranged(drawing.result, points, tried), tried)[1]
             _map_beside(drawing._replace(style=inner, overlay=()))
         except ConfigError:
             continue
-        return f"give a size such as {larger.size[0] + 0.005:.2f}x{larger.size[1] + 0.005:.2f}in, or fewer points"
+        return f"give a size such as {wide + 0.005:.2f}x{tall + 0.005:.2f}in, or fewer points"
     return "give a larger size, or fewer points"
 
 

@@ -38,7 +38,6 @@ from ptmcad.show.render.sketch import (
 )
 from ptmcad.show.spiral import spiral
 
-
 SketchColours = Mapping[str, str]
 """Colours of a first and a second bar (of more all have the first), springs, loads, supports and
 text.
@@ -62,7 +61,12 @@ def draw_sketch(axes: Any, seen: Sketch, style: SketchColours, prefix: str) -> N
         kind = number if few else 0
         width = bar_width(seen.mechanism, number)
         _line(
-            axes, (start, end), style[f"bar-{kind}"], width, f"{prefix}bar-{''.join(names)}", 2 + kind
+            axes,
+            (start, end),
+            style[f"bar-{kind}"],
+            width,
+            f"{prefix}bar-{''.join(names)}",
+            2 + kind,
         )
     for name, points in seen.coils.items():
         _line(axes, points, "white", 2.4, "", 4)
@@ -137,7 +141,12 @@ def _supports(axes: Any, seen: Sketch, style: SketchColours, prefix: str) -> Non
     """
     for number, ends in enumerate(seen.rails, 1):
         _line(
-            axes, ends, style["base"], 1.8, f"{prefix}base" + (f"-{number}" if number > 1 else ""), 1
+            axes,
+            ends,
+            style["base"],
+            1.8,
+            f"{prefix}base" + (f"-{number}" if number > 1 else ""),
+            1,
         )
         _line(axes, ends, "white", 0.7, "", 1.1)
     for name, kind in seen.mechanism.supports.items():
@@ -181,7 +190,9 @@ def _slider(x: float, y: float, colour: str, upright: bool = False) -> Any:
 def bar_mark(number: int, style: SketchColours = STRONG, many: bool = False) -> Mark:
     """A bar in a legend: of two a number, or one of many."""
     width = MANY_BARS if many else BAR_WIDTHS[number]
-    return line_mark({"color": style[f"bar-{number}"], "linewidth": width, "solid_capstyle": "butt"})
+    return line_mark(
+        {"color": style[f"bar-{number}"], "linewidth": width, "solid_capstyle": "butt"}
+    )
 
 
 def spring_mark() -> Mark:

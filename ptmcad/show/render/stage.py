@@ -122,9 +122,6 @@ class Stage:
             self.curve = axes_at(self.figure, (left + 0.35, foot, wide - 0.35, chart), "energy")
             self._energy()
 
-    def __len__(self) -> int:
-        return len(self.motion.steps)
-
     def frame(self, number: int) -> Pixels:
         """The picture of a step as an array of red, green and blue, shape (height, width, 3)."""
         self.canvas.restore_region(self.background)

@@ -36,8 +36,7 @@ from ptmcad.question.slice import Slice
 from ptmcad.show.posetable import kind_of
 from ptmcad.show.render.axes import symbol
 from ptmcad.show.render.colours import fill_of
-from ptmcad.show.render.outline import TOLERANCE, outline, shapes
-from ptmcad.show.render.view import Shapes
+from ptmcad.show.render.outline import TOLERANCE, Shapes, outline, shapes
 from ptmcad.show.report.mapsvg import (
     SIDE,
     counts_text,
@@ -46,7 +45,6 @@ from ptmcad.show.report.mapsvg import (
     pattern_defs,
     region_labels,
     region_outlines,
-    room,
     wall_lines,
 )
 from ptmcad.show.report.reproduction import reproduction
@@ -324,8 +322,8 @@ def _map_view(result: RegionMap, *, fine: bool, framed: bool) -> dict[str, Any]:
 
 def _frame(seen: Shapes) -> dict[str, Any]:
     """The axes, and how much room they need around the window."""
-    around = room(seen, detail=False)
-    return {"svg": "".join(frame(seen, around)), "view": around.view, "place": around.place}
+    view, place, svg = frame(seen, detail=False)
+    return {"svg": svg, "view": view, "place": place}
 
 
 def _digest(result: RegionMap) -> list[list[Any]]:
