@@ -26,7 +26,7 @@ from ptmcad.model.work import PointForce, loads_at
 from ptmcad.show.drawable import no_drawing
 from ptmcad.show.render.axes import symbol, with_symbols
 from ptmcad.show.render.colours import INK
-from ptmcad.show.render.inches import axes_at, stroke, write, write_lines
+from ptmcad.show.render.inches import TITLE_LINE, axes_at, stroke, titled, write, write_lines
 from ptmcad.show.render.labels import Position
 from ptmcad.show.render.legend import Entry, Type, draw_legend
 from ptmcad.show.render.mechanism import (
@@ -55,16 +55,13 @@ from ptmcad.show.render.sketch import (
     components,
     frame_of,
 )
-from ptmcad.show.style import Size
 from ptmcad.show.units import energy_unit
 from ptmcad.text.enclosure import Enclosure
 from ptmcad.text.numerals import magnitude
 from ptmcad.text.tree import to_text
 
-MARGIN, GAP, HEAD, BELOW, KEY, TITLE_LINE = 0.2, 0.14, 0.26, 0.36, 2.75, 0.22
-"""In inches: the rim, space between panels, a panel's lines above and below, the legend, a line of
-the title.
-"""
+MARGIN, GAP, HEAD, BELOW, KEY = 0.2, 0.14, 0.26, 0.36, 2.75
+"""In inches: the rim, space between panels, a panel's lines above and below, the legend."""
 
 
 def draw_poses(poses: Poses) -> Figure:
@@ -101,8 +98,8 @@ def draw_poses(poses: Poses) -> Figure:
     title = heading(poses, round(12.4 * (width - 2 * MARGIN)))
     top = below + MARGIN
     with settings():
-        figure = titled(title, (width, top + TITLE_LINE * len(title) + 0.08 + MARGIN), MARGIN)
-        figure.set_label(f"{' '.join(title)}\n{describe(poses)}")
+        size = (width, top + TITLE_LINE * len(title) + 0.08 + MARGIN)
+        figure: Figure = titled(title, describe(poses), size, MARGIN, MARGIN)
         for number, pose in enumerate(shown):
             down, across = divmod(number, columns)
             corner = (MARGIN + across * (wide + GAP), top - down * (row + GAP) - HEAD - tall)
@@ -153,13 +150,6 @@ def draw_pose(
     draw_sketch(axes, seen, STRONG if strong else PALE, f"{gid}-")
 
 
-def titled(lines: Sequence[str], size: Size, left: float) -> Figure:
-    """A page of a size in inches with a title at the top."""
-    figure = Figure(figsize=size, facecolor="white")
-    write_lines(figure, (left, size[1] - MARGIN - TITLE_LINE / 2), lines, 11, TITLE_LINE)
-    return figure
-
-
 def empty(poses: Poses) -> Figure:
     """The picture when there is nothing to draw: it says why."""
     lines = [
@@ -168,7 +158,8 @@ def empty(poses: Poses) -> Figure:
         *textwrap.wrap(poses.remark or "No equilibrium is known here.", 80),
     ]
     with settings():
-        figure = titled(lines, (7.0, 2 * MARGIN + TITLE_LINE * len(lines)), MARGIN)
+        size = (7.0, 2 * MARGIN + TITLE_LINE * len(lines))
+        figure: Figure = titled(lines, "", size, MARGIN, MARGIN)
         figure.set_label(f"{lines[0]}\n{describe(poses)}")
     return figure
 
