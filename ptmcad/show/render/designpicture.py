@@ -20,7 +20,7 @@ from matplotlib.patches import Rectangle
 from ptmcad.answer.design import BestDesign
 from ptmcad.question.slice import Axis
 from ptmcad.show.designtable import design_table, value_text
-from ptmcad.show.render.axes import scale_of, symbol
+from ptmcad.show.render.axes import symbol
 from ptmcad.show.render.colours import INK
 from ptmcad.show.render.inches import write_lines
 from ptmcad.show.render.printing import settings
@@ -102,7 +102,7 @@ def _draw_curve(axes: Any, found: BestDesign) -> None:
     if found.best is not None and found.value is not None:
         at = scaled(found.best[over.name], over)
         axes.plot([at], [float(found.value)], "D", color=BEST, fillstyle="none", clip_on=False)
-    _show(axes.xaxis, over)
+    scaled_axis(axes.xaxis, over, "")
     axes.set_ylabel(_value_name(found), fontsize=SIZE + 2)
 
 
@@ -132,8 +132,8 @@ def _draw_plane(figure: Figure, axes: Any, found: BestDesign, foot: float) -> No
         place = [scaled(found.best[axis.name], axis) for axis in (first, second)]
         axes.plot(*[[x] for x in place], "D", color=BEST, markersize=8, markeredgewidth=1.6, fillstyle="none",
                   clip_on=False, zorder=4)  # fmt: skip
-    _show(axes.xaxis, first)
-    _show(axes.yaxis, second)
+    scaled_axis(axes.xaxis, first, "")
+    scaled_axis(axes.yaxis, second, "")
 
 
 def _rectangle(ranges: Any, first: Axis, second: Axis) -> Rectangle:
@@ -145,11 +145,6 @@ def _rectangle(ranges: Any, first: Axis, second: Axis) -> Rectangle:
         scaled(d, second),
     )
     return Rectangle((left, low), right - left, high - low)
-
-
-def _show(shown: Any, over: Axis) -> None:
-    scaled_axis(shown, over, None)
-    shown.set_label_text(scale_of(over.low, over.high).name(symbol(over.name)), fontsize=SIZE + 2)
 
 
 def _value_name(found: BestDesign) -> str:

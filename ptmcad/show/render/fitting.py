@@ -12,7 +12,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
-from functools import lru_cache
 from math import ceil
 from typing import Any
 
@@ -27,7 +26,7 @@ from ptmcad.show.render.inches import ALLOWANCE, Box, few, wrapped
 from ptmcad.show.render.labels import Position
 from ptmcad.show.render.layout import Layout
 from ptmcad.show.render.legend import Entry, Type
-from ptmcad.show.render.view import Same, View
+from ptmcad.show.render.view import View, remembered
 from ptmcad.show.style import MIN_FONT, LegendPlace, PictureStyle, Size
 
 MIN_SIDE = 11.0
@@ -337,14 +336,14 @@ def overhang(parts: PageParts, view: View, sides: Size, how: Dress) -> Box:
     sides.
     """
     family = tuple(rcParams["font.family"])
-    (left, below, right, above), names = _measured(Same(parts.slice), view, how, family)
+    (left, below, right, above), names = _measured(parts.slice, view, how, family)
     # a name may be longer than its axis
     beyond = [max(0.0, (name - side) / 2) for name, side in zip(names, sides, strict=True)]
     return max(left, beyond[0]), max(below, beyond[1]), max(right, beyond[0]), max(above, beyond[1])
 
 
-@lru_cache(maxsize=512)
-def _measured(of: Same[Slice], view: View, how: Dress, _: tuple[str, ...]) -> tuple[Box, Size]:
+@remembered(512)
+def _measured(slice: Slice, view: View, how: Dress, _: tuple[str, ...]) -> tuple[Box, Size]:
     """The same for axes long enough for their names, and the lengths of these, in fonts of these
     families.
     """
@@ -352,7 +351,7 @@ def _measured(of: Same[Slice], view: View, how: Dress, _: tuple[str, ...]) -> tu
     canvas: Any = FigureCanvasAgg(figure)
     renderer = canvas.get_renderer()
     axes: Any = figure.add_axes((1 / 3, 1 / 3, 1 / 3, 1 / 3))
-    dress(axes, of.it, view.x, view.y, how)
+    dress(axes, slice, view.x, view.y, how)
     spaces = beside(figure, axes)
     names = (
         axes.xaxis.label.get_window_extent(renderer).width / 72,

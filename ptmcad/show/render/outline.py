@@ -15,7 +15,6 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
-from functools import lru_cache
 from itertools import pairwise
 from math import cos, pi
 from typing import TYPE_CHECKING, TypeAlias
@@ -29,7 +28,7 @@ from ptmcad.answer.regionmap import RegionMap, Stack
 from ptmcad.exact.cad.polyline import critical_shares
 from ptmcad.exact.cad.projection import FibredCurve, by_component, curves_of, lines_of
 from ptmcad.show.render.polylines import simplified_line
-from ptmcad.show.render.view import CellShape, Floats, Interval, Same, View, WallShape
+from ptmcad.show.render.view import CellShape, Floats, Interval, View, WallShape, remembered
 from ptmcad.text.flint_numbers import from_fraction, to_fraction
 
 if TYPE_CHECKING:  # a map of the exact engine has no cover
@@ -205,13 +204,12 @@ def outline(result: RegionMap, view: View | None = None, tolerance: float = TOLE
     tolerance : how far a chord may miss its branch, as a share of the view's size; the vertices are
         on it in any case.
     """
-    return _outline(Same(result), View.whole(result) if view is None else view, tolerance)
+    return _outline(result, View.whole(result) if view is None else view, tolerance)
 
 
 # a map is drawn into several files, in several sizes and into the report
-@lru_cache(maxsize=32)
-def _outline(of: Same[RegionMap], view: View, tolerance: float) -> Outline:
-    result = of.it
+@remembered(32)
+def _outline(result: RegionMap, view: View, tolerance: float) -> Outline:
     base = result.base
     curves = by_component(curves_of(result.components, base))
     axis = result.slice.axes[base]

@@ -49,8 +49,9 @@ from ptmcad.show.render.rangeplate import (
     middle_of,
     scaled,
     scaled_axis,
+    unit_along,
 )
-from ptmcad.show.units import unit, with_unit
+from ptmcad.show.units import with_unit
 
 BAR, LABELS, ROOM = 0.62, 0.42, 0.36
 MAX_BAR, SHARE_OF_ROW = 6.0, 0.6
@@ -92,7 +93,7 @@ def draw_range(slice: Slice, found: CountIntervals) -> Figure:
         ruler.set(yticks=[])
         ruler.spines[["left", "right", "top"]].set_visible(False)
         ruler.tick_params(labelsize=SIZE + 1)
-        scaled_axis(ruler.xaxis, found.along, slice, 1)
+        scaled_axis(ruler.xaxis, found.along, unit_along(slice, found.along), 1)
         draw_legend(figure, legend, LEFT + WIDE + RIGHT, tall - 0.05)
     return figure
 
@@ -208,15 +209,15 @@ def draw_widths(slice: Slice, found: OperationWidths) -> Figure:
                 # a maximum at the window's edge would be cut in half
                 lower.plot([scaled(Fraction(at), over)], [float(m.width)], "D", color=_WIDEST, markerfacecolor=face,
                            markersize=6, clip_on=False, zorder=3)  # fmt: skip
-        scaled_axis(upper.yaxis, along, slice)
-        known = unit(slice, slice.axis_names.index(along.name))
+        known = unit_along(slice, along)
+        scaled_axis(upper.yaxis, along, known)
         lower.set_ylabel(
             f"width of the\n{with_unit(found.model.nouns.range, known)}", fontsize=SIZE + 1
         )
         lower.set_ylim(bottom=0)
         lower.margins(y=0.12)
         for axes in (upper, lower):
-            scaled_axis(axes.xaxis, over, slice if axes is lower else None, 2)
+            scaled_axis(axes.xaxis, over, unit_along(slice, over) if axes is lower else None, 2)
             axes.tick_params(labelsize=SIZE)
         upper.tick_params(labelbottom=False)
         write_lines(figure, (LEFT, foot - 0.55), texts, SIZE, 0.2)

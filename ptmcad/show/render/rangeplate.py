@@ -80,7 +80,8 @@ def panelled(
         axes.margins(y=0.08)
         axes.tick_params(labelsize=SIZE, labelbottom=number == last)
         axes.set_ylabel(name, fontsize=SIZE + 2)
-        scaled_axis(axes.xaxis, found.along, slice if number == last else None, 2)
+        known = unit_along(slice, found.along) if number == last else None
+        scaled_axis(axes.xaxis, found.along, known, 2)
         panels.append(axes)
     draw_legend(figure, entries, LEFT + WIDE + RIGHT, tall - 0.05)
     return figure, panels
@@ -102,17 +103,18 @@ def middle_of(end: End | Enclosure) -> Fraction:
     return end if isinstance(end, Fraction) else (end.low + end.high) / 2
 
 
-def scaled_axis(shown: Any, axis: Axis, slice: Slice | None, pad: float = 4) -> None:
-    """Limits and, where the slice is given, the name of one of matplotlib's axes, with scale and unit."""
+def scaled_axis(shown: Any, axis: Axis, unit: str | None, pad: float = 4) -> None:
+    """Limits of one of matplotlib's axes and, unless the unit is None, its name with scale and unit."""
     scale = scale_of(axis.low, axis.high)
     shown.axes.set(**{f"{shown.axis_name}lim": (scale.low, scale.high)})
-    if slice is not None:
-        known = unit(slice, slice.axis_names.index(axis.name))
-        shown.axes.set(
-            **{f"{shown.axis_name}label": with_unit(scale.name(symbol(axis.name)), known)}
-        )
-        shown.set(labelpad=pad)
-        shown.label.set_fontsize(SIZE + 2)
+    if unit is not None:
+        shown.set_label_text(with_unit(scale.name(symbol(axis.name)), unit), fontsize=SIZE + 2)
+        shown.labelpad = pad
+
+
+def unit_along(slice: Slice, axis: Axis) -> str:
+    """The unit of one of a slice's axes."""
+    return unit(slice, slice.axis_names.index(axis.name))
 
 
 def short(value: Fraction) -> str:

@@ -11,7 +11,6 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from functools import lru_cache
 from typing import Any, TypeAlias
 
 import numpy as np
@@ -24,7 +23,7 @@ from ptmcad.show.render.inches import text_width
 from ptmcad.show.render.labels import Box, Label, Stroke, around, place, polyline
 from ptmcad.show.render.outline import Shapes
 from ptmcad.show.render.polylines import simplified_line
-from ptmcad.show.render.view import Interval, Point, Same, View
+from ptmcad.show.render.view import Interval, Point, View, remembered
 from ptmcad.show.style import Size
 from ptmcad.show.table import count_text
 
@@ -120,14 +119,9 @@ def seen_thin_walls(whole: Shapes, sides: Size) -> bool:
     )
 
 
+@remembered(32)
 def told_apart(result: RegionMap) -> RegionMap:
     """An exact map whose regions are joined only where all counts of both cells are equal."""
-    return _told_apart(Same(result))
-
-
-@lru_cache(maxsize=32)
-def _told_apart(of: Same[RegionMap]) -> RegionMap:
-    result = of.it
     alike = np.array(
         [
             (adjacency.first, adjacency.second)

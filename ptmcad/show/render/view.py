@@ -7,9 +7,11 @@ certified ones, by methods of the same names. Positions are fractions of the vie
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import Generic, TypeVar
+from functools import lru_cache, wraps
+from typing import Any, TypeVar, cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -25,22 +27,33 @@ CellShape = tuple[int, list[Floats]]
 """A cell's number and its closed polygons."""
 WallShape = tuple[int, bool, Floats]
 """The component that a wall lies on, whether it separates two regions, and its polyline."""
-T = TypeVar("T")
+Function = TypeVar("Function", bound=Callable[..., Any])
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Same(Generic[T]):
-    """A key that only the very same object equals: to compare whole maps would take as long as to
-    draw them.
-    """
+class _Same:
+    """A key that only the very same object equals."""
 
-    it: T
+    it: object
 
     def __eq__(self, other: object) -> bool:
-        return isinstance(other, Same) and other.it is self.it
+        return isinstance(other, _Same) and other.it is self.it
 
     def __hash__(self) -> int:
         return id(self.it)
+
+
+def remembered(most: int) -> Callable[[Function], Function]:
+    """A decorator that keeps so many answers, by the identity of the first argument: to compare whole
+    maps would take as long as to draw them.
+    """
+
+    def decorated(function: Function) -> Function:
+        kept = lru_cache(most)(lambda of, *others: function(of.it, *others))
+        found: Any = wraps(function)(lambda it, *others: kept(_Same(it), *others))
+        return cast(Function, found)
+
+    return decorated
 
 
 @dataclass(frozen=True, slots=True)
