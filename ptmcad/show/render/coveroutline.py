@@ -81,20 +81,16 @@ class CoverOutline:
         """
         tree = self.complement.subdivision
         steps = tree.steps
-        places = []
-        for axis, shown, n in zip(
+        views = zip(
             self.result.slice.axes, (self.view.x, self.view.y), (columns, rows), strict=True
-        ):
-            start, step = (
-                axis.share(shown[0]) * steps,
-                (shown[1] - shown[0]) / axis.width * steps / n,
-            )
-            places.append(
-                np.array(
-                    [int(start + (k + Fraction(1, 2)) * step) for k in range(n)], dtype=np.int64
-                )
-            )
-        x, y = np.clip(places[0], 0, steps - 1), np.clip(places[1], 0, steps - 1)
+        )
+        x, y = (
+            np.array(
+                [int(start + (k + Fraction(1, 2)) * step) for k in range(n)], dtype=np.int64
+            ).clip(0, steps - 1)
+            for axis, (low, high), n in views
+            for start, step in [(axis.share(low) * steps, (high - low) / axis.width * steps / n)]
+        )
         leaf = tree.leaves_right_above(np.tile(x, rows), np.repeat(y, columns))
         free = tree.state[leaf] == FREE
         image = np.full(

@@ -25,11 +25,11 @@ from ptmcad.answer.regionmap import RegionMap
 from ptmcad.answer.words import noun, several
 from ptmcad.errors import ConfigError
 from ptmcad.show.render.axes import dress, heading_of
-from ptmcad.show.render.colours import INK, STRONG, THIN, Paint, paint_of
+from ptmcad.show.render.colours import INK, Paint, paint_of
 from ptmcad.show.render.fitting import PageParts, fitted
 from ptmcad.show.render.inches import Box, axes_at, write_lines
-from ptmcad.show.render.layout import SIDE, Layout, flowing
-from ptmcad.show.render.legend import Entry, Type, draw_legend, entries, hidden_entries
+from ptmcad.show.render.layout import SIDE, Layout, flowing, title_lines
+from ptmcad.show.render.legend import Entry, draw_legend, entries, hidden_entries
 from ptmcad.show.render.outline import Shapes, shapes
 from ptmcad.show.render.overlay import Overlay, draw_overlay, overlay_entries
 from ptmcad.show.render.painting import paint_map
@@ -50,7 +50,6 @@ from ptmcad.show.render.slivers import (
 from ptmcad.show.style import DEFAULT, LegendPlace, PictureStyle, Size
 from ptmcad.show.table import area_text, areas_are_known, count_text, region_area
 
-TITLE_COLUMNS, TITLE_LINES = 80, 3
 _ZOOMED_COLUMNS = 34
 """Characters over an inset, most of them digits: as many as there is room for."""
 
@@ -187,31 +186,25 @@ class MapDrawing(NamedTuple):
 
     def drawn(self) -> tuple[Figure, tuple[str, ...]]:
         """The picture, and what it leaves out."""
-        result, style = self.result, self.style
-        if style.flows:
-            seen = _seen(shapes(result), (SIDE, SIDE), self.dpi)
-            type = Type(
-                strong=style.strong, thin=style.strong * THIN / STRONG, thin_lines=style.thin_lines
-            )
-            legend = self.legend(seen)[0]
-            title = _lines(self.title)
-            layout = flowing(title, legend, type, len(seen.views))
-        else:
-            seen, layout = self.fit()
+        result = self.result
+        seen, layout = self.fit()
         figure = Figure(figsize=layout.size, dpi=self.dpi, facecolor="white")
-        figure.set_label(f"{' '.join(_lines(whole_title(result)))}\n{description(result)}")
+        figure.set_label(f"{' '.join(title_lines(whole_title(result)))}\n{description(result)}")
         self.draw_parts(figure, seen, layout)
         return figure, left_out(seen, layout)
 
     def fit(self) -> tuple[_Seen, Layout]:
-        """What is to be drawn on a page of a given size, and where.
+        """What is to be drawn, and where.
 
-        What is thin follows from the map's size, which follows from what has to be told about thin
-        regions.
+        On a page of a given size, what is thin follows from the map's size, which follows from what
+        has to be said of thin regions.
         """
         result, style, whole = self.result, self.style, shapes(self.result)
         wide, tall = style.size or (8.4, 5.7)
-        seen, tries = _seen(whole, (wide / 2, tall / 2), self.dpi), 3
+        sides = (SIDE, SIDE) if style.flows else (wide / 2, tall / 2)
+        seen, tries = _seen(whole, sides, self.dpi), 3
+        if style.flows:
+            return seen, flowing(self.title, self.legend(seen)[0], style, len(seen.views))
         while True:
             parts = PageParts(
                 result.slice,
@@ -322,11 +315,6 @@ def _natural(parts: PageParts) -> Size:
 
 def whole_title(result: RegionMap) -> str:
     return "".join(c if c.isprintable() else " " for c in heading_of(result.slice))
-
-
-def _lines(title: str) -> list[str]:
-    """Of a title over a picture that grows with what it shows."""
-    return textwrap.wrap(title, TITLE_COLUMNS, max_lines=TITLE_LINES, placeholder=" …")
 
 
 def _name_of(result: RegionMap, sliver: Sliver, number: int | None) -> str:

@@ -15,7 +15,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
-from itertools import pairwise
+from itertools import groupby, pairwise
 from math import cos, pi
 from typing import TYPE_CHECKING, TypeAlias
 
@@ -102,15 +102,14 @@ class Outline:
             line or a point.
         """
         for stack in self.stacks:
-            levels = [self.region(stack.number, k) == region for k in range(len(stack.heights) - 1)]
-            start = None
-            for level, inside in enumerate([*levels, False]):
-                if inside and start is None:
-                    start = level
-                elif not inside and start is not None:
-                    bottom, top = (self.line(stack, row, tolerance) for row in (start, level))
+            levels = range(len(stack.heights) - 1)
+            own = [self.region(stack.number, k) == region for k in levels]
+            for inside, run in groupby(levels, own.__getitem__):
+                if inside:
+                    first, *rest = run
+                    bottom = self.line(stack, first, tolerance)
+                    top = self.line(stack, first + len(rest) + 1, tolerance)
                     yield np.concatenate([bottom, top[::-1]])
-                    start = None
 
     def cells(self, tolerance: float = 0.0) -> Iterator[CellShape]:
         """Every cell of the view with its outline, stack after stack from below."""
