@@ -20,7 +20,7 @@ from ptmcad.cli import run
 from ptmcad.cli.plot import measured, places, poses_at
 from ptmcad.errors import ConfigError
 from ptmcad.show.render.around import draw_around
-from ptmcad.show.render.labels import Stroke, crosses
+from ptmcad.show.render.labels import crosses
 from ptmcad.show.render.mappicture import MapDrawing
 from ptmcad.show.render.overlay import Agreement
 from ptmcad.show.render.printing import settings
@@ -137,7 +137,7 @@ def test_lines_to_points_do_not_cross_and_hardly_cover_text() -> None:
         for text in said
         if text.axes is None or text.axes.get_gid() == "map"
     ]
-    strokes = [Stroke(*pair, 0.0) for course in courses for pair in pairwise(course)]
+    strokes = [(*pair, 0.0) for course in courses for pair in pairwise(course)]
     covering = [
         s
         for s in strokes

@@ -26,7 +26,7 @@ from ptmcad.ask.solving import poses_at, solve
 from ptmcad.errors import ConfigError
 from ptmcad.show.render import printing
 from ptmcad.show.render.energy import Energy
-from ptmcad.show.render.labels import Label, Stroke, crosses, overlap, place, polyline
+from ptmcad.show.render.labels import Label, crosses, overlap, place, polyline
 from ptmcad.show.render.landscape import contour_levels, draw_landscape
 from ptmcad.show.render.mechanism import PALE, STRONG
 from ptmcad.show.render.posepicture import draw_poses
@@ -126,9 +126,9 @@ def labels_are_clear(found: Poses) -> None:
     frame, arrows = frame_of(found.equilibria), arrow_lengths(found)
     for pose in found.equilibria:
         seen = frame.sketch(found.model, pose, arrows)
-        strokes = [Stroke(a, b, w / 2) for (a, b), w in zip(seen.bars, BAR_WIDTHS, strict=True)]
+        strokes = [(a, b, w / 2) for (a, b), w in zip(seen.bars, BAR_WIDTHS, strict=True)]
         strokes += [s for line in seen.coils.values() for s in polyline(line, 0.4)]
-        strokes += [Stroke(start, end, 2.0) for _, start, end in seen.arrows]
+        strokes += [(start, end, 2.0) for _, start, end in seen.arrows]
         boxes = [placed.box for placed in seen.labels]
         for box in boxes:
             assert not any(crosses(stroke, box) for stroke in strokes)
@@ -183,7 +183,7 @@ def test_a_stroke_meets_a_box_where_one_of_its_points_does(
     points = np.linspace(a, b, 400)
     inner = (np.abs(points) < np.array([3.0, 2.0]) + half - 0.06).all(axis=1)
     outer = (np.abs(points) < np.array([3.0, 2.0]) + half + 0.06).all(axis=1)
-    hit = crosses(Stroke((a[0], a[1]), (b[0], b[1]), half), box)
+    hit = crosses(((a[0], a[1]), (b[0], b[1]), half), box)
     if a != b:
         assert hit or not inner.any()
         assert outer.any() or not hit

@@ -22,7 +22,7 @@ from ptmcad.show.render.blocks import LINE, Block, PointPoses, arranged, sized
 from ptmcad.show.render.colours import INK
 from ptmcad.show.render.fitting import larger
 from ptmcad.show.render.inches import stroke, write_lines
-from ptmcad.show.render.labels import Box, Position, Stroke, crosses
+from ptmcad.show.render.labels import Box, Position, crosses
 from ptmcad.show.render.layout import Layout
 from ptmcad.show.render.mappicture import MapDrawing, left_out
 from ptmcad.show.render.posepicture import draw_pose
@@ -108,7 +108,7 @@ def _drawn(drawing: MapDrawing, points: Sequence[PointPoses]) -> DrawnMap:
     ]
 
     def cost(start: Position, tip: Position) -> float:
-        covered = sum(crosses(Stroke(start, tip, _HALF), box) for box in texts)
+        covered = sum(crosses((start, tip, _HALF), box) for box in texts)
         return dist(start, tip) + _COVERED * covered
 
     tips = [_tip(axes, seen.whole.view.approximate_position(at)) for at, _ in points]

@@ -261,10 +261,10 @@ def _mark(
     for placed in place(labels, strokes, boxes, (3.0, 3.0, length - 3, length - 3)):
         x, y = (value / length for value in placed.center)
         if placed.leader is not None:
-            ends = np.array([placed.label.at, placed.leader]) / length
+            ends = np.array([placed.at, placed.leader]) / length
             axes.plot(*ends.T, color=INK, linewidth=0.6, zorder=5, transform=axes.transAxes)
         axes.text(
-            x, y, placed.label.text, gid=f"number-{placed.label.text}", transform=axes.transAxes, fontsize=9,
+            x, y, placed.text, gid=f"number-{placed.text}", transform=axes.transAxes, fontsize=9,
             fontweight="bold", color=INK, ha="center", va="center", zorder=7,
             bbox={"boxstyle": "round,pad=0.12", "facecolor": "white", "edgecolor": "none", "alpha": 0.85},
         )  # fmt: skip

@@ -77,10 +77,10 @@ def draw_sketch(axes: Any, seen: Sketch, style: SketchColours, prefix: str) -> N
         axes.add_artist(_arrow(start, end, style["load"], f"{prefix}load-{name}"))
     for placed in seen.labels:
         if placed.leader is not None:
-            _line(axes, (placed.label.at, placed.leader), style["text"], 0.4, "", 8)
+            _line(axes, (placed.at, placed.leader), style["text"], 0.4, "", 8)
         axes.text(
-            *placed.center, placed.label.text, fontsize=LABEL_SIZE, color=style["text"], ha="center", va="center",
-            zorder=9, gid=f"{prefix}label-{placed.label.text}",
+            *placed.center, placed.text, fontsize=LABEL_SIZE, color=style["text"], ha="center", va="center",
+            zorder=9, gid=f"{prefix}label-{placed.text}",
         )  # fmt: skip
 
 

@@ -24,7 +24,6 @@ from ptmcad.show.render.axes import symbol
 from ptmcad.show.render.labels import (
     Box,
     Label,
-    Placed,
     Position,
     Stroke,
     distance,
@@ -108,7 +107,7 @@ class Sketch:
     bars: tuple[tuple[Position, Position], ...]
     coils: Mapping[str, tuple[Position, ...]]
     arrows: tuple[Arrow, ...]
-    labels: tuple[Placed, ...]
+    labels: tuple[Label, ...]
 
 
 def frame_of(
@@ -182,7 +181,7 @@ def sketched(
         coincide have one label, away from the middle.
     """
     bars = tuple((nodes[a], nodes[b]) for a, b in mechanism.bars)
-    drawn = [Stroke(a, b, bar_width(mechanism, number) / 2) for number, (a, b) in enumerate(bars)]
+    drawn = [(a, b, bar_width(mechanism, number) / 2) for number, (a, b) in enumerate(bars)]
     coils = {}
     for number, (start, end) in enumerate(mechanism.spring_ends, 1):
         coils[f"spring-{number}"] = line = _spring(nodes[start], nodes[end], drawn, turns)
@@ -192,8 +191,8 @@ def sketched(
         drawn += polyline(line, 0.5)
     placed_arrows = tuple(_arrows(mechanism.loads, nodes, arrows))
     rails = tuple(_rails(mechanism, nodes))
-    strokes = [*drawn, *(Stroke(a, b, 1.0) for a, b in rails)]
-    strokes += [Stroke(start, end, 3.0) for _, start, end in placed_arrows]
+    strokes = [*drawn, *((a, b, 1.0) for a, b in rails)]
+    strokes += [(start, end, 3.0) for _, start, end in placed_arrows]
     placed = place(
         _labels(nodes, offsets),
         strokes,
@@ -267,7 +266,7 @@ def _covered(line: Sequence[Position], drawn: Sequence[Stroke]) -> bool:
         (first[0] + (last[0] - first[0]) * k / 20, first[1] + (last[1] - first[1]) * k / 20)
         for k in range(21)
     ]
-    return sum(any(distance(p, s) < AMPLITUDE + s.half for s in drawn) for p in points) > 7
+    return sum(any(distance(p, s) < AMPLITUDE + s[2] for s in drawn) for p in points) > 7
 
 
 def _arrows(loads: Sequence[Load], nodes: Nodes, lengths: Mapping[str, float]) -> Iterator[Arrow]:

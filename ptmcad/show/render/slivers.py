@@ -333,7 +333,7 @@ def arrows(
         (
             sliver, one.clear,
             {
-                "text": one.label.text, "xy": tip, "xytext": (one.center[0] / sides[0], one.center[1] / sides[1]),
+                "text": one.text, "xy": tip, "xytext": (one.center[0] / sides[0], one.center[1] / sides[1]),
                 "fontsize": size, "gid": f"arrow-{sliver.region}",
             },
         )

@@ -30,7 +30,7 @@ from ptmcad.show.drawable import no_drawing
 from ptmcad.show.render.axes import Dress, dress, symbol
 from ptmcad.show.render.colours import INK, paint_of
 from ptmcad.show.render.inches import axes_at, text_width, write
-from ptmcad.show.render.labels import Placed, Position
+from ptmcad.show.render.labels import Label, Position
 from ptmcad.show.render.legend import Entry, Rows, Type, count_entries, draw_rows, head_of, in_rows
 from ptmcad.show.render.mappicture import whole_title
 from ptmcad.show.render.mechanism import PALE, STRONG, draw_sketch
@@ -271,17 +271,12 @@ def _sketches(motion: Motion, mechanism: Mechanism, sides: Size) -> list[Sketch]
     for step, nodes in zip(motion.steps, _places(motion, mechanism, sides), strict=True):
         seen = sketched(mechanism, nodes, sides, arrows[step.at], TURNS, ways[-1])
         sketches.append(seen)
-        ways.append(
-            {
-                p.label.text: (p.center[0] - p.label.at[0], p.center[1] - p.label.at[1])
-                for p in seen.labels
-            }
-        )
+        ways.append({p.text: (p.center[0] - p.at[0], p.center[1] - p.at[1]) for p in seen.labels})
 
-    def glided(placed: Placed, number: int) -> Placed:
+    def glided(placed: Label, number: int) -> Label:
         near = ways[max(1, number - GLIDE + 1) : number + GLIDE + 2]
-        x, y = (sum(way[placed.label.text][k] for way in near) / len(near) for k in (0, 1))
-        center = (placed.label.at[0] + x, placed.label.at[1] + y)
+        x, y = (sum(way[placed.text][k] for way in near) / len(near) for k in (0, 1))
+        center = (placed.at[0] + x, placed.at[1] + y)
         return replace(placed, center=center, leader=None)
 
     return [
