@@ -148,9 +148,9 @@ def test_edges_of_what_is_undetermined_are_no_curves_at_which_the_count_changes(
     curves = result.boundaries(tolerance=0.1)
     for given, words in (
         (result, "the count changes"),
-        (replace(result, cover=Cover(1, ())), "undetermined"),
+        (replace(result, cover=Cover(1, ())), "edge of the undetermined part"),
     ):
         with settings():
             drawn = field_figure(given, field, curves, 0, 100)
         said = {text.get_text() for text in drawn.texts}
-        assert said & {"the count changes", "undetermined"} == {words}
+        assert said & {"the count changes", "edge of the undetermined part"} == {words}

@@ -192,10 +192,11 @@ def _legend(
     result: RegionMap, field: Field, boundaries: Sequence[Boundary], style: PictureStyle
 ) -> list[Entry]:
     """What lines, white and grey mean, as far as they are there."""
-    separated = any(boundary.separates for boundary in boundaries)
-    # around what is undetermined in a certified map the count may be the same on both sides
-    certified = result.cover is not None
-    legend = [Entry(("the count changes",), STRONG)] if separated and not certified else []
+    legend = []
+    if any(boundary.separates for boundary in boundaries):
+        # of the counts on both sides of what a certified map leaves open nothing is known
+        words = "the count changes" if result.cover is None else "edge of the undetermined part"
+        legend.append(Entry((words,), STRONG))
     if any(jump.any() for jump in field.jumps or ()):
         legend.append(Entry((f"the branch of {pose_words(result, field)} changes",), _edge_mark))
     unknown = field.region == NONE
@@ -204,9 +205,9 @@ def _legend(
         legend.append(
             Entry((f"no {what}" if not field.missed + field.beyond else "no value",), Fill(_EMPTY))
         )
-    if unknown.any() or (certified and separated):
+    if unknown.any():
         # a pixel of an exact map is open where its centre is on a curve
-        words = "undetermined" if certified else "on a curve"
+        words = "on a curve" if result.cover is None else "undetermined"
         legend.append(Entry((words,), undetermined_fill(style.palette)))
     return legend
 
