@@ -22,7 +22,7 @@ from ptmcad.show.render.fitting import rewrapped
 from ptmcad.show.render.inches import few, wrapped
 from ptmcad.show.render.legend import Entry, Type, entries, hidden_entries
 from ptmcad.show.render.mappicture import whole_title
-from ptmcad.show.render.outline import Shapes, shapes
+from ptmcad.show.render.outline import shapes
 from ptmcad.show.render.printing import settings
 from ptmcad.show.render.slivers import arrows_of, seen_thin_walls
 from ptmcad.show.style import LegendPlace, PictureStyle, Size
@@ -99,11 +99,11 @@ def comparison_figure(comparison: Comparison, dpi: int, style: PictureStyle) -> 
     ConfigError
         When it does not fit into the style's size.
     """
-    em, first = style.base_font / 72, shapes(comparison.first)
+    em = style.base_font / 72
     width = style.widest if style.widest is not None else 3 * (SIDE * style.base_font / 9 + 6 * em)
     side, given = width / 3 - 5.5 * em, style.size if style.wide is None else None
     with settings(style):
-        panels = _panels(comparison, first, style, (side, given[1] / 2 if given else side), dpi)
+        panels = _panels(comparison, style, (side, given[1] / 2 if given else side), dpi)
         foot = max(Type.of(style).height(panel.legend) for panel in panels) + 0.2
         heads = LINE * em * max(len(panel.head) for panel in panels)
         size = given or (width, side + foot + heads + 4.5 * em)
@@ -114,9 +114,7 @@ def comparison_figure(comparison: Comparison, dpi: int, style: PictureStyle) -> 
     return figure
 
 
-def _panels(
-    comparison: Comparison, first: Shapes, style: PictureStyle, sides: Size, dpi: int
-) -> list[Panel]:
+def _panels(comparison: Comparison, style: PictureStyle, sides: Size, dpi: int) -> list[Panel]:
     """The two maps and the difference, with text as wide as they are."""
     type, side = Type.of(style), sides[0]
 
@@ -124,17 +122,16 @@ def _panels(
         title: str, legend: Iterable[Entry], names: Sequence[str] | None, **drawn: Any
     ) -> Panel:
         marks, hidden = arrows_of(drawn["seen"], sides, dpi, type.detail, names)
-        told = [*legend, *hidden_entries(hidden)]
-        without = style.legend is LegendPlace.NONE
-        below = [] if without else [rewrapped(entry, side, type) for entry in told]
+        below = [rewrapped(entry, side, type) for entry in (*legend, *hidden_entries(hidden))]
+        if style.legend is LegendPlace.NONE:
+            below = []
         head = few(wrapped(title, side, type.head, True), _MAX_HEAD)
         return Panel(head=head, legend=below, arrows=marks, **drawn)
 
     found = []
     pair = (comparison.first, comparison.second)
-    for letter, own, result, seen in zip(
-        LETTERS, own_words(*pair), pair, (first, shapes(pair[1])), strict=True
-    ):
+    for letter, own, result in zip(LETTERS, own_words(*pair), pair, strict=True):
+        seen = shapes(result)
         thin = seen_thin_walls(seen, (72 * sides[0], 72 * sides[1]))
         paint = replace(paint_of(style, result), thin_walls=thin)
         title = whole_title(result) if style.title is None else own
