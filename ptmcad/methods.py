@@ -323,11 +323,11 @@ METHODS |= {
     },
     "Grid": {
         "_repr_html_": "show.notebook:grid_html",
-        "_repr_png_": "show.notebook:grid_png",
+        "_repr_png_": "show.render:grid_png",
     },
     "Field": {
         "_repr_html_": "show.notebook:field_html",
-        "_repr_png_": "show.notebook:field_png",
+        "_repr_png_": "show.render:field_png",
     },
     "Comparison": {"_repr_html_": "show.notebook:comparison_html"},
     "Motion": {"save": _motion_save, "_repr_html_": "show.notebook:motion_html"},

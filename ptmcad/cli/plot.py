@@ -113,8 +113,6 @@ def measured(result: RegionMap, path: Path) -> tuple[tuple[Measured, ...], int]:
         When the file is not such a table or has no points, a value is no exact number or no count,
         or there are more than `MAX_ROWS` points.
     """
-    from ptmcad.show.render.overlay import Measured
-
     found: list[Measured] = []
     outside = 0
     for line, row in rows_of(path, result, ("label", "count")):
@@ -125,7 +123,7 @@ def measured(result: RegionMap, path: Path) -> tuple[tuple[Measured, ...], int]:
             count = _count(result, row["count"])
         if _inside(result, at):
             label = "".join(c if c.isprintable() else " " for c in row["label"])[:MAX_LABEL]
-            found.append(Measured(at, label, _agreement(result, at, count)))
+            found.append((at, label, _agreement(result, at, count)))
         else:
             outside += 1
     if not found and not outside:
@@ -137,13 +135,11 @@ def disagreements(result: RegionMap, found: Sequence[Measured]) -> list[str]:
     """The points that have another count than the map, in words; the first `MAX_TOLD` of them."""
     from ptmcad.show.render.overlay import Agreement
 
-    others = [point for point in found if point.agreement is Agreement.OTHER]
+    others = [(at, label) for at, label, agreement in found if agreement is Agreement.OTHER]
     lines = []
-    for point in others[:MAX_TOLD]:
-        where = equalities(dict(zip(result.slice.axis_names, point.at, strict=True)), shortest_text)
-        lines.append(
-            f"another count than in the map: {f'{point.label}, ' if point.label else ''}at {where}"
-        )
+    for at, label in others[:MAX_TOLD]:
+        where = equalities(dict(zip(result.slice.axis_names, at, strict=True)), shortest_text)
+        lines.append(f"another count than in the map: {f'{label}, ' if label else ''}at {where}")
     if len(others) > MAX_TOLD:
         lines.append(f"and at {len(others) - MAX_TOLD} more points")
     return lines

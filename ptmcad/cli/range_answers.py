@@ -7,13 +7,14 @@ Guarantee: only the engine that a question needs is loaded.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cache, partial
 from typing import TYPE_CHECKING, Any
 
 from ptmcad.cli.progress import ProgressBar
 from ptmcad.cli.slices import question_of
+from ptmcad.question.counts import USUAL
 from ptmcad.question.slice import Slice
 from ptmcad.show import render
 
@@ -78,7 +79,10 @@ def answer(
     """
     from ptmcad.show.ranges import rangedocument
 
-    texts, parts, pictures = [question_of(slice)], dict[str, Any](), dict[str, Callable[[], Any]]()
+    # a table of intervals has no column of a predicate
+    counted = slice if slice.count.kind.predicate is None else replace(slice, count=USUAL)
+    texts, parts = [question_of(counted)], dict[str, Any]()
+    pictures = dict[str, Callable[[], Any]]()
     for found, text, end, make in _answers(slice, request):
         texts.append(text)
         parts |= rangedocument.part(found, request.digits)

@@ -167,7 +167,7 @@ def _film(sweep: Sweep, fps: int, progress: ProgressBar, path: Path) -> None:
 
     _some(sweep)
     values = [member.parameters for member in shown]
-    render.save_pictures(lambda: render.SweepFilm(seen, values), path, DEFAULT, fps)
+    render.save_pictures(lambda: render.sweep_pictures(seen, values), path, DEFAULT, fps)
 
 
 def _some(sweep: Sweep) -> RegionMap:

@@ -35,30 +35,22 @@ FPS, DPI = 20, 80
 MAP_DPI, PAGE_DPI = 150, 100
 
 
-def picture(result: RegionMap, kind: str) -> bytes | None:
+def _picture(result: RegionMap, kind: str) -> bytes | None:
     """The map's picture as the content of a PNG or SVG; None where there is nothing to draw yet."""
     if not result.cells:
         return None
-    image: bytes = render.content(
-        render.plot(result, None, DEFAULT, False, MAP_DPI, {}), kind, dpi=MAP_DPI
-    )
-    return image
+    return _content(render.plot(result, None, DEFAULT, False, MAP_DPI, {}), kind, MAP_DPI)
 
 
 def map_html(result: RegionMap) -> str:
     """The picture, and the regions with their counts and areas."""
-    image = picture(result, "png")
+    image = map_png(result)
     shown = "" if image is None else _image(image, result.slice.heading)
     rows = [_region_row(result, k, r) for k, r in enumerate(result.regions[:MAX_ROWS])]
     if len(result.regions) > MAX_ROWS:
         rows.append(("…", f"{len(result.regions) - MAX_ROWS} more", "", "", ""))
-    head = (
-        "region",
-        result.slice.count.value,
-        "in all",
-        count_words("({index})", result.slice.model),
-        "area",
-    )
+    index = count_words("({index})", result.slice.model)
+    head = ("region", result.slice.count.value, "in all", index, "area")
     return f"<div><b>{escape(result.slice.heading)}</b>, {result.status.value}</div>{shown}{_table(head, rows)}"
 
 
@@ -89,16 +81,11 @@ def comparison_html(comparison: Comparison) -> str:
     """Both maps and their difference, and how large that is."""
     figure = render.comparison_figure(comparison, PAGE_DPI, DEFAULT)
     words = "".join(f"<div>{escape(line)}</div>" for line in render.difference_words(comparison))
-    return f"{_image(_png(figure), repr(comparison))}{words}"
+    return f"{_image(_content(figure), repr(comparison))}{words}"
 
 
-def image_html(data: bytes, what: str, words: str) -> str:
-    """A picture in place, with what it is for those who do not see it, and words below."""
-    return f"{_image(data, what)}<div>{escape(words)}</div>"
-
-
-def _png(figure: Any) -> bytes:
-    image: bytes = render.content(figure, "png", dpi=PAGE_DPI)
+def _content(figure: Any, kind: str = "png", dpi: int = PAGE_DPI) -> bytes:
+    image: bytes = render.content(figure, kind, dpi=dpi)
     return image
 
 
@@ -108,30 +95,9 @@ def _image(data: bytes, what: str, kind: str = "png") -> str:
     return f'<img alt="{escape(what)}" style="max-width:100%" src="{source}">'
 
 
-def grid_png(grid: Grid) -> bytes:
-    """The grid's pixels as the content of a PNG."""
-    image: bytes = render.grid_png(grid, PAGE_DPI)
-    return image
-
-
-def field_png(field: Field) -> bytes:
-    """The field's pixels as the content of a PNG."""
-    image: bytes = render.field_png(field, PAGE_DPI)
-    return image
-
-
-def field_words(field: Field) -> str:
-    """What of the field is known."""
-    missed = (
-        f" {field.missed} pixels have such a solution that was not found." if field.missed else ""
-    )
-    agreeing = f"{field.checked} pixels agree with exact poses to {field.difference:.1g}"
-    return f"{render.description(field)} {agreeing}.{missed}"
-
-
 def family_png(family: FamilyMap) -> bytes:
     """The members' maps side by side as the content of a PNG."""
-    return _png(render.multiples_figure(family, PAGE_DPI, DEFAULT))
+    return _content(render.multiples_figure(family, PAGE_DPI, DEFAULT))
 
 
 def family_html(family: FamilyMap) -> str:
@@ -141,7 +107,7 @@ def family_html(family: FamilyMap) -> str:
 
 def design_html(found: BestDesign) -> str:
     """The picture of the values and bounds, and the answer in words."""
-    return _image(_png(render.figure_of_design(found)), repr(found)) + text_html(found.table())
+    return _image(_content(render.figure_of_design(found)), repr(found)) + text_html(found.table())
 
 
 def motion_html(motion: Motion) -> str:
@@ -168,20 +134,24 @@ def _table(head: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
 
 def map_svg(result: RegionMap) -> str | None:
     """The map's picture as SVG; None where there is nothing to draw yet."""
-    image = picture(result, "svg")
+    image = _picture(result, "svg")
     return None if image is None else image.decode()
 
 
 def map_png(result: RegionMap) -> bytes | None:
     """The map's picture as PNG; None where there is nothing to draw yet."""
-    return picture(result, "png")
+    return _picture(result, "png")
 
 
 def grid_html(grid: Grid) -> str:
     """The grid's pixels in place."""
-    return image_html(grid_png(grid), repr(grid), "Counts at the pixels' centres, exactly.")
+    words = escape("Counts at the pixels' centres, exactly.")
+    return f"{_image(render.grid_png(grid), repr(grid))}<div>{words}</div>"
 
 
 def field_html(field: Field) -> str:
     """The field's pixels in place, and what of it is known."""
-    return image_html(field_png(field), repr(field), field_words(field))
+    words = f"{render.description(field)} {field.checked} pixels agree with exact poses to {field.difference:.1g}."
+    if field.missed:
+        words += f" {field.missed} pixels have such a solution that was not found."
+    return f"{_image(render.field_png(field), repr(field))}<div>{escape(words)}</div>"

@@ -15,6 +15,7 @@ from ptmcad.answer.regionmap import Component
 from ptmcad.answer.slicevariety import SliceVariety
 from ptmcad.answer.words import several
 from ptmcad.errors import ConfigError
+from ptmcad.question.slice import merged
 from ptmcad.show.document.varietydocument import document
 from ptmcad.show.polynomial_text import Style, polynomial_lines, symbols
 from ptmcad.text.numerals import text_of
@@ -133,19 +134,13 @@ def fixed_parameters(variety: SliceVariety) -> str:
     Loads that are zero and parameters that are axes are not named.
     """
     names = variety.slice.axis_names
-    values = {name: value.to_text(names) for name, value in variety.slice.parameters.items()}
-    mechanism = variety.slice.model
-    for shorthand, own_names in mechanism.shorthands.items():
-        own = {name: values.pop(name) for name in own_names if name in values}
-        if len(set(own.values())) == 1:
-            values[shorthand] = next(iter(own.values()))
-        else:
-            values.pop(shorthand, None)
-            values |= own
+    model = variety.slice.model
+    texts = {name: value.to_text(names) for name, value in variety.slice.parameters.items()}
+    values = merged(texts, model)
     return ", ".join(
         f"{name} = {value if len(value) <= _MAX_VALUE else value[:_MAX_VALUE] + '...'}"
         for name, value in values.items()
-        if value != name and not (name in mechanism.forces and value == "0")
+        if value != name and not (name in model.forces and value == "0")
     )
 
 

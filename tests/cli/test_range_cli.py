@@ -9,7 +9,10 @@ from pathlib import Path
 import jsonschema
 import pytest
 
-from ptmcad.cli import run
+import ptmcad
+from ptmcad.cli import range_answers, run
+from ptmcad.cli.range_answers import RangeRequest
+from ptmcad.question.counts import Count
 
 ROOT = Path(__file__).resolve().parents[2]
 FIG4 = str(ROOT / "configs" / "fig4.yaml")
@@ -24,6 +27,15 @@ def test_a_record(capsys: pytest.CaptureFixture[str]) -> None:
         "question  fig4: rho in [0, 2], L2 in [0, 2]; F3 = -10, F4 = -10; count stable\n"
     )
     assert "operation range: 0.4981306959 to 1.041432630, width 0.5433019346\n" in out
+
+
+def test_no_count_is_named_of_which_the_table_has_no_column(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(range_answers, "_answers", lambda *_: ())
+    slice = ptmcad.slice_from_options(slice="rho,L2", sets=["l0=1/5"], count=Count.ADMISSIBLE)
+    asked = RangeRequest("rho", {"L2": "1"}, False, 1, None, None, 10, ())
+    assert range_answers.answer(slice, asked).text.split()[-2:] == ["count", "stable"]
 
 
 @pytest.mark.parametrize(

@@ -24,7 +24,6 @@ from ptmcad.show.render.polylines import GRID
 from ptmcad.show.report.atlas import (
     MAX_MAPS,
     SIDE,
-    SheetFrame,
     Thumbnail,
     atlas,
     chosen,
@@ -39,7 +38,7 @@ RECORD = {
     "parameters": {"d": 2},
     "axes": {"a": [-2, 2], "b": [-1, 1]},
 }
-FRAME = SheetFrame((("rho", "0", "2"), ("L2", "0", "2")), f"L1 = 1, {HOSTILE}", "stable")
+FRAME = ((("rho", "0", "2"), ("L2", "0", "2")), f"L1 = 1, {HOSTILE}", "stable")
 
 
 def family(

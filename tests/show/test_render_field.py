@@ -18,6 +18,7 @@ from support.maps import CONFIGS, shipped
 
 import ptmcad
 from ptmcad.cli.plot import poses_at
+from ptmcad.cover.rectangles import Cover
 from ptmcad.show.render.fieldlines import MIN_PIECE, MIN_RING, contour_lines, pixel_edges
 from ptmcad.show.render.fieldpicture import field_figure
 from ptmcad.show.render.printing import settings
@@ -138,3 +139,18 @@ def test_a_contour_goes_on_over_a_curve_at_which_its_branch_does_not_change() ->
     inside = [line for line in found[140.0] if abs(line[:, 0]).max() < 0.09]
     assert len(inside) == 1
     assert inside[0][np.argmax(inside[0][:, 0])] == pytest.approx([-0.03, 0.33], abs=0.02)
+
+
+def test_edges_of_what_is_undetermined_are_no_curves_at_which_the_count_changes() -> None:
+    """Nothing says that the counts on both sides of a certified map's gaps differ."""
+    result = shipped("fig4")
+    field = result.field("energy", "stable:1", 8, 8)
+    curves = result.boundaries(tolerance=0.1)
+    for given, words in (
+        (result, "the count changes"),
+        (replace(result, cover=Cover(1, ())), "edge of the undetermined part"),
+    ):
+        with settings():
+            drawn = field_figure(given, field, curves, 0, 100)
+        said = {text.get_text() for text in drawn.texts}
+        assert said & {"the count changes", "edge of the undetermined part"} == {words}

@@ -20,7 +20,7 @@ from ptmcad.cli import run
 from ptmcad.cli.plot import measured, places, poses_at
 from ptmcad.errors import ConfigError
 from ptmcad.show.render.around import draw_around
-from ptmcad.show.render.labels import Stroke, crosses
+from ptmcad.show.render.labels import crosses
 from ptmcad.show.render.mappicture import MapDrawing
 from ptmcad.show.render.overlay import Agreement
 from ptmcad.show.render.printing import settings
@@ -137,7 +137,7 @@ def test_lines_to_points_do_not_cross_and_hardly_cover_text() -> None:
         for text in said
         if text.axes is None or text.axes.get_gid() == "map"
     ]
-    strokes = [Stroke(*pair, 0.0) for course in courses for pair in pairwise(course)]
+    strokes = [(*pair, 0.0) for course in courses for pair in pairwise(course)]
     covering = [
         s
         for s in strokes
@@ -161,13 +161,13 @@ def test_measured_points_are_compared_with_the_map(tmp_path: Path) -> None:
     table = tmp_path / "points.csv"
     table.write_text("L2,rho,label,count\n1.5,0.7,a,2\n1,1.5,b,2\n0.5,1.2,,\n9,9,out,1\n")
     found, outside = measured(shipped("fig4"), table)
-    assert [point.agreement for point in found] == [
+    assert [agreement for _, _, agreement in found] == [
         Agreement.SAME,
         Agreement.OTHER,
         Agreement.UNTOLD,
     ]
-    assert [point.label for point in found] == ["a", "b", ""]
-    assert found[0].at == (Fraction(7, 10), Fraction(3, 2)) and outside == 1
+    assert [label for _, label, _ in found] == ["a", "b", ""]
+    assert found[0][0] == (Fraction(7, 10), Fraction(3, 2)) and outside == 1
     with settings():
         made = MapDrawing(shipped("fig4"), styled(size="6x4in"), 100, overlay=found).figure()
     said = [t.get_text() for t in made.texts]
@@ -203,11 +203,19 @@ def test_counts_are_compared_as_numbers(tmp_path: Path) -> None:
     table = tmp_path / "points.csv"
     table.write_text("rho,L2,count\n0.7,1.5,2.0\n0.7,1.5,02\n0.7,1.5,1\n")
     found, _ = measured(shipped("fig4"), table)
-    assert [point.agreement for point in found] == [Agreement.SAME, Agreement.SAME, Agreement.OTHER]
+    assert [agreement for _, _, agreement in found] == [
+        Agreement.SAME,
+        Agreement.SAME,
+        Agreement.OTHER,
+    ]
     by_index = shipped("fig4", "index")
     table.write_text('rho,L2,count\n0.7,1.5,"2,3,1"\n0.7,1.5,"(2,  3, 1)"\n0.7,1.5,"(1,2,1)"\n')
     found, _ = measured(by_index, table)
-    assert [point.agreement for point in found] == [Agreement.SAME, Agreement.SAME, Agreement.OTHER]
+    assert [agreement for _, _, agreement in found] == [
+        Agreement.SAME,
+        Agreement.SAME,
+        Agreement.OTHER,
+    ]
     table.write_text("rho,L2,count\n0.7,1.5,2\n0.7,1.5,2 of 6\n")
     with pytest.raises(ConfigError, match=r"points.csv:3: '2 of 6' is not a count by index"):
         measured(by_index, table)

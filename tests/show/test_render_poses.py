@@ -26,7 +26,7 @@ from ptmcad.ask.solving import poses_at, solve
 from ptmcad.errors import ConfigError
 from ptmcad.show.render import printing
 from ptmcad.show.render.energy import Energy
-from ptmcad.show.render.labels import Label, Stroke, crosses, overlap, place, polyline
+from ptmcad.show.render.labels import Label, crosses, overlap, place, polyline
 from ptmcad.show.render.landscape import contour_levels, draw_landscape
 from ptmcad.show.render.mechanism import PALE, STRONG
 from ptmcad.show.render.posepicture import draw_poses
@@ -35,7 +35,6 @@ from ptmcad.show.render.sketch import (
     BAR_WIDTHS,
     PIN,
     SPIRAL,
-    Scene,
     arrow_lengths,
     frame_of,
 )
@@ -102,7 +101,7 @@ def test_stable_ones_come_first_and_are_strong() -> None:
         next(a.get_color() for a in axes.get_children() if str(a.get_gid()).endswith("bar-A1A3"))
         for axes in figure.axes
     ]
-    assert colours == [STRONG.bars[0]] * 2 + [PALE.bars[0]] * 4
+    assert colours == [STRONG["bar-0"]] * 2 + [PALE["bar-0"]] * 4
     texts = [t.get_text() for t in figure.texts]
     kinds = ["stable (minimum)"] * 2 + ["saddle"] * 3 + ["maximum"]
     assert [t for t in texts if t[0].isdigit() and "  " in t[:3]] == [
@@ -126,10 +125,10 @@ def labels_are_clear(found: Poses) -> None:
         return
     frame, arrows = frame_of(found.equilibria), arrow_lengths(found)
     for pose in found.equilibria:
-        seen = Scene(found.model, frame, arrows).of(pose)
-        strokes = [Stroke(a, b, w / 2) for (a, b), w in zip(seen.bars, BAR_WIDTHS, strict=True)]
+        seen = frame.sketch(found.model, pose, arrows)
+        strokes = [(a, b, w / 2) for (a, b), w in zip(seen.bars, BAR_WIDTHS, strict=True)]
         strokes += [s for line in seen.coils.values() for s in polyline(line, 0.4)]
-        strokes += [Stroke(start, end, 2.0) for _, start, end in seen.arrows]
+        strokes += [(start, end, 2.0) for _, start, end in seen.arrows]
         boxes = [placed.box for placed in seen.labels]
         for box in boxes:
             assert not any(crosses(stroke, box) for stroke in strokes)
@@ -150,7 +149,7 @@ def test_springs_on_bars_are_drawn_aside() -> None:
     flat = [p for p in found.equilibria if p.flat]
     assert len(flat) == 4
     for pose in flat:
-        seen = Scene(found.model, frame, {}).of(pose)
+        seen = frame.sketch(found.model, pose, {})
         middles = [
             np.mean(line[1:-1], axis=0)[1] - seen.nodes["A1"][1] for line in seen.coils.values()
         ]
@@ -184,7 +183,7 @@ def test_a_stroke_meets_a_box_where_one_of_its_points_does(
     points = np.linspace(a, b, 400)
     inner = (np.abs(points) < np.array([3.0, 2.0]) + half - 0.06).all(axis=1)
     outer = (np.abs(points) < np.array([3.0, 2.0]) + half + 0.06).all(axis=1)
-    hit = crosses(Stroke((a[0], a[1]), (b[0], b[1]), half), box)
+    hit = crosses(((a[0], a[1]), (b[0], b[1]), half), box)
     if a != b:
         assert hit or not inner.any()
         assert outer.any() or not hit
@@ -376,7 +375,7 @@ def test_torsion_springs_are_spirals_at_their_joints_in_every_pose() -> None:
         assert {gid for gid in lines if "torsion" in gid} == {
             f"pose-{number}-torsion-{k}" for k in (1, 2, 4)
         }
-        nodes = scene.nodes(pose)
+        nodes = scene.sketch(jaw().model, pose, {}).nodes
         for k, joint, arm, least in (
             (1, "P", "Q", PIN),
             (2, "O", "P", PIN),

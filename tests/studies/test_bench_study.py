@@ -307,7 +307,7 @@ def test_one_slice_by_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]
         wrong = m["figures"]["index"]["wrong"]
         assert wrong == (0.0, 0.0) if m["method"] == "exact" else 0 < wrong[0] < 0.1
     assert terminal(study) in shown
-    assert len(read_error_curve(tmp_path / "fig2.error-time.json").series) == 2
+    assert len(read_error_curve(tmp_path / "fig2.error-time.json")[1]) == 2
     assert "![Error against seconds for fig2](fig2.bench.svg)" in (
         tmp_path / "error-time.md"
     ).read_text(encoding="utf-8")
@@ -317,8 +317,8 @@ def test_what_is_written_for_the_report_is_positive(tmp_path: Path) -> None:
     path = tmp_path / "fig4.error-time.json"
     path.write_text(curve_file(STUDY), encoding="utf-8")
     found = read_error_curve(path)
-    assert [len(s.points) for s in found.series] == [2, 3]
-    assert found.series[0].points[1] == (0.4, 2e-9)
+    assert [len(points) for _, points in found[1]] == [2, 3]
+    assert found[1][0][1][1] == (0.4, 2e-9)
 
 
 def test_page_tells_what_is_left_out_and_what_is_claimed() -> None:

@@ -36,7 +36,7 @@ from ptmcad.cover.rectangles import MAX_STEPS, Cover
 from ptmcad.question.counts import PREDICATES, Count
 from ptmcad.question.slice import Point, Slice
 from ptmcad.show.document.exactnumbers import INDEX, merged
-from ptmcad.show.document.slantedpieces import read_tubes, with_cover
+from ptmcad.show.document.slantedpieces import rectangles_around, with_cover
 from ptmcad.show.document.slicedocument import SLICE, polynomial_over
 from ptmcad.text.codec import (
     COUNT,
@@ -237,7 +237,7 @@ def _cover(node: Node) -> Cover:
                 f"is not sorted, or not of distinct rectangles: see numbers {k} and {k + 1}"
             )
     if "patches" in entry:
-        around = (r for tube in read_tubes(entry["patches"], steps) for r in tube.rectangles(steps))
+        around = rectangles_around(entry["patches"], steps)
         rectangles = tuple(sorted({*rectangles, *islice(around, MAX_RECTANGLES)}))
         if next(around, None) is not None:
             raise entry["patches"].fault(f"needs more than {MAX_RECTANGLES} rectangles")

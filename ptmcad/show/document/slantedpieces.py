@@ -15,7 +15,7 @@ from dataclasses import replace
 from fractions import Fraction
 from itertools import pairwise
 from math import comb
-from typing import Any, NamedTuple
+from typing import Any
 
 from ptmcad.answer.regionmap import Cell, Region, RegionMap
 from ptmcad.cover import components
@@ -31,68 +31,58 @@ FINENESS = 2**13
 """Rectangles are narrower than this part of the window where they can be."""
 
 
-class Tube(NamedTuple):
-    """One tube in its frame, along axis 0 or 1."""
-
-    frame: Rectangle
-    along: int
-    half: int
-    controls: tuple[int, ...]
-
-    def rectangles(self, steps: int) -> Iterator[Rectangle]:
-        """Rectangles that hold the tube, in the order in which they go along it."""
-        left, right, bottom, top = self.frame
-        low, high, least, most = self.frame if self.along == 0 else (bottom, top, left, right)
-        degree, fineness = len(self.controls) - 1, (high - low) * FINENESS // steps
-        columns = max(MIN_COLUMNS, min(MAX_COLUMNS, fineness))
-        rise = degree * max(abs(b - a) for a, b in pairwise(self.controls))
-        reach = self.half + rise // (2 * columns) + 1
-        for k in range(columns):
-            a, b = 2 * k + 1, 2 * (columns - k) - 1
-            sums = (
-                comb(degree, i) * a**i * b ** (degree - i) * c for i, c in enumerate(self.controls)
-            )
-            middle = sum(sums) // (2 * columns) ** degree
-            start = low + (high - low) * k // columns
-            end = min(low + (high - low) * (k + 1) // columns + 1, high)
-            first, last = max(least, middle - reach), min(most, middle + 1 + reach)
-            if first < last:
-                yield (start, end, first, last) if self.along == 0 else (first, last, start, end)
-
-
-def read_tubes(node: Node, steps: int) -> Iterator[Tube]:
-    """The tubes of all pieces.
+def rectangles_around(pieces: Node, steps: int) -> Iterator[Rectangle]:
+    """Rectangles that hold all pieces, tube after tube.
 
     Raises
     ------
     ValueError
         With the place of the first fault.
     """
-    if not isinstance(node.value, list) or len(node.value) > MAX_PIECES:
-        raise node.fault(f"is not a list of at most {MAX_PIECES} slanted pieces")
-    for k, value in enumerate(node.value):
-        place = Node(value, f"{node.place}[{k}]")
-        if not (isinstance(value, list) and all(type(n) is int for n in value[:5])):
-            raise place.fault("does not begin with a frame and an axis: five integers")
-        match value:
+    for place in pieces.items(most=MAX_PIECES):
+        match place.value:
             case [left, right, bottom, top, 0 | 1 as along, *tubes] if (
-                0 <= left < right <= steps and 0 <= bottom < top <= steps and tubes
+                tubes
+                and all(type(n) is int for n in (left, right, bottom, top))
+                and 0 <= left < right <= steps
+                and 0 <= bottom < top <= steps
             ):
                 for tube in tubes:
-                    yield Tube((left, right, bottom, top), along, *_polynomial(tube, place))
+                    half, *controls = _integers(tube, place)
+                    yield from _around((left, right, bottom, top), along, half, controls, steps)
             case _:
                 raise place.fault("is not a frame in the window, an axis and tubes")
 
 
-def _polynomial(tube: Any, place: Node) -> tuple[int, tuple[int, ...]]:
-    match tube:
-        case [half, _, _, *_] if (
-            len(tube) <= MAX_CONTROLS + 1
-            and all(type(n) is int and abs(n) <= MAX_CONTROL for n in tube)
-            and half > 0
-        ):
-            return half, tuple(tube[1:])
-    raise place.fault(f"has a tube that is not a half width and up to {MAX_CONTROLS} controls")
+def _integers(tube: Any, place: Node) -> list[int]:
+    if not (
+        isinstance(tube, list)
+        and 3 <= len(tube) <= MAX_CONTROLS + 1
+        and all(type(n) is int and abs(n) <= MAX_CONTROL for n in tube)
+        and tube[0] > 0
+    ):
+        raise place.fault(f"has a tube that is not a half width and up to {MAX_CONTROLS} controls")
+    return tube
+
+
+def _around(
+    frame: Rectangle, along: int, half: int, controls: list[int], steps: int
+) -> Iterator[Rectangle]:
+    """Rectangles that hold one tube in its frame, in the order in which they go along it."""
+    low, high, least, most = frame if along == 0 else frame[2:] + frame[:2]
+    degree, fineness = len(controls) - 1, (high - low) * FINENESS // steps
+    columns = max(MIN_COLUMNS, min(MAX_COLUMNS, fineness))
+    rise = degree * max(abs(b - a) for a, b in pairwise(controls))
+    reach = half + rise // (2 * columns) + 1
+    for k in range(columns):
+        a, b = 2 * k + 1, 2 * (columns - k) - 1
+        sums = (comb(degree, i) * a**i * b ** (degree - i) * c for i, c in enumerate(controls))
+        middle = sum(sums) // (2 * columns) ** degree
+        start = low + (high - low) * k // columns
+        end = min(low + (high - low) * (k + 1) // columns + 1, high)
+        first, last = max(least, middle - reach), min(most, middle + 1 + reach)
+        if first < last:
+            yield (start, end, first, last) if along == 0 else (first, last, start, end)
 
 
 def with_cover(result: RegionMap, cover: Cover) -> RegionMap:

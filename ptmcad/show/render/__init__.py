@@ -9,7 +9,7 @@ _FUNCTIONS = {
     "comparing": ("comparison_figure", "difference_words", "traced"),
     "designpicture": ("figure_of_design",),
     "fieldpicture": ("description", "field_figure"),
-    "film": ("SweepFilm", "gif_bytes", "save_film", "save_pictures"),
+    "film": ("gif_bytes", "save_film", "save_pictures", "sweep_pictures"),
     "landscape": ("draw_landscape",),
     "mechanism": ("draw_mechanism",),
     "chartgrid": ("multiples_figure",),

@@ -20,13 +20,13 @@ from ptmcad.errors import ConfigError
 from ptmcad.show.drawable import no_drawing
 from ptmcad.show.render.blocks import LINE, Block, PointPoses, arranged, sized
 from ptmcad.show.render.colours import INK
+from ptmcad.show.render.fitting import larger
 from ptmcad.show.render.inches import stroke, write_lines
-from ptmcad.show.render.labels import Box, Position, Stroke, crosses
+from ptmcad.show.render.labels import Box, Position, crosses
 from ptmcad.show.render.layout import Layout
 from ptmcad.show.render.mappicture import MapDrawing, left_out
-from ptmcad.show.render.mechanism import STRONG, draw_sketch
-from ptmcad.show.render.posepicture import pose_axes
-from ptmcad.show.render.sketch import Scene, arrow_lengths
+from ptmcad.show.render.posepicture import draw_pose
+from ptmcad.show.render.sketch import arrow_lengths
 from ptmcad.show.style import MAX_SIDE, PictureStyle, Size, styled
 
 DrawnMap = tuple[Figure, tuple[str, ...]]
@@ -36,8 +36,6 @@ _COVERED, _HALF = 10.0, 0.035
 """Inches of a line that are as bad as a text that it covers, and half a line's width with a little
 space.
 """
-_STEPS, _STEP = 60, 1.05
-"""How sizes are tried that would do."""
 
 
 def draw_around(drawing: MapDrawing, points: Sequence[PointPoses]) -> DrawnMap:
@@ -72,21 +70,16 @@ def _remedy(drawing: MapDrawing, points: Sequence[PointPoses]) -> str:
     style = drawing.style
     if style.size is None or style.wide is not None:
         return "give fewer points, or a size of your own"
-    wide, tall = style.size
-    for step in range(1, _STEPS):
-        larger = (
-            styled(style, size=(wide * _STEP**step, tall * _STEP**step))
-            if wide * _STEP**step < MAX_SIDE
-            else None
-        )
-        if larger is None or larger.size is None:
+    for wide, tall in larger(style.size):
+        if wide >= MAX_SIDE:
             break
+        tried = styled(style, size=(wide, tall))
         try:
-            inner = sized(arranged(drawing.result, points, larger), larger)[1]
+            inner = sized(arranged(drawing.result, points, tried), tried)[1]
             _map_beside(drawing._replace(style=inner, overlay=()))
         except ConfigError:
             continue
-        return f"give a size such as {larger.size[0] + 0.005:.2f}x{larger.size[1] + 0.005:.2f}in, or fewer points"
+        return f"give a size such as {wide + 0.005:.2f}x{tall + 0.005:.2f}in, or fewer points"
     return "give a larger size, or fewer points"
 
 
@@ -115,7 +108,7 @@ def _drawn(drawing: MapDrawing, points: Sequence[PointPoses]) -> DrawnMap:
     ]
 
     def cost(start: Position, tip: Position) -> float:
-        covered = sum(crosses(Stroke(start, tip, _HALF), box) for box in texts)
+        covered = sum(crosses((start, tip, _HALF), box) for box in texts)
         return dist(start, tip) + _COVERED * covered
 
     tips = [_tip(axes, seen.whole.view.approximate_position(at)) for at, _ in points]
@@ -163,12 +156,12 @@ def _draw_block(figure: Figure, block: Block, corner: Position, style: PictureSt
     top -= line * len(block.head)
     mechanism = block.poses.model.whole
     assert mechanism is not None  # others have been refused
-    scene = Scene(mechanism, frame, arrow_lengths(block.poses))
+    arrows = arrow_lengths(block.poses)
     for k, pose in enumerate(block.shown):
         row, column = divmod(k, block.across)
         at = (left + column * frame.width / 72, top - (row + 1) * frame.height / 72)
-        panel = pose_axes(figure, at, frame, f"pose-{block.number}-{k + 1}", strong=False)
-        draw_sketch(panel, scene.of(pose), STRONG, f"pose-{block.number}-{k + 1}-")
+        seen = frame.sketch(mechanism, pose, arrows)
+        draw_pose(figure, seen, at, f"pose-{block.number}-{k + 1}", strong=True, framed=False)
 
 
 def _lead(

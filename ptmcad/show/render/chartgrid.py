@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 import warnings
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from fractions import Fraction
@@ -27,7 +27,6 @@ from ptmcad.show.render.fitting import MIN_SIDE
 from ptmcad.show.render.inches import wrapped, write_lines
 from ptmcad.show.render.legend import (
     Entry,
-    Rows,
     Type,
     count_entries,
     draw_legend,
@@ -37,11 +36,10 @@ from ptmcad.show.render.legend import (
     in_rows,
     thin_entry,
 )
-from ptmcad.show.render.outline import shapes
+from ptmcad.show.render.outline import Shapes, shapes
 from ptmcad.show.render.painting import paint_map
 from ptmcad.show.render.printing import settings
 from ptmcad.show.render.slivers import Arrow, arrows_of, draw_arrows, seen_thin_walls
-from ptmcad.show.render.view import Shapes
 from ptmcad.show.style import MIN_FONT, LegendPlace, PictureStyle, Size
 from ptmcad.text.numerals import shortest_text
 
@@ -66,60 +64,60 @@ class Panel:
     arrows: Sequence[Arrow] = ()
 
 
-@dataclass(frozen=True, slots=True)
-class PanelGrid:
-    """Charts in rows from above, between a head and a foot of so many inches.
+def draw_panels(
+    figure: Figure,
+    panels: Sequence[Panel],
+    columns: int,
+    ends: tuple[float, float],
+    style: PictureStyle,
+    shared: bool = True,
+) -> None:
+    """Charts in rows from above, with their heads and legends.
 
-    Attributes
+    Parameters
     ----------
-    what : how an error speaks of the charts.
-    least : inches of a chart's sides.
-    shared : whether numbers and names stand at the outer charts alone.
+    ends : inches of the page's head and foot.
+    shared : whether charts have one legend, and numbers and names stand at the outer ones alone.
+
+    Raises
+    ------
+    ConfigError
+        When the page leaves too little to the charts.
     """
-
-    columns: int
-    how: Dress
-    type: Type
-    head: float
-    foot: float
-    what: str
-    least: float
-    shared: bool = True
-
-    def draw(self, figure: Figure, panels: Sequence[Panel], **heads: Any) -> None:
-        """All charts with their heads, which look as is asked for, and legends.
-
-        Raises
-        ------
-        ConfigError
-            When the page leaves too little to the charts.
-        """
-        rows = math.ceil(len(panels) / self.columns)
-        places: Any = figure.subplots(rows, self.columns, squeeze=False).flat
-        for number, (axes, panel) in enumerate(zip(places, panels, strict=False)):
-            paint_map(axes, panel.seen, f"{number}-", panel.paint)
-            view = panel.seen.view
-            dress(axes, panel.seen.result.slice, view.x, view.y, self.how)
-            draw_arrows(axes, panel.arrows, self.how.scale)
-            for region, fill in (panel.outlined or {}).items():
-                rims = [np.vstack([rim, rim[:1]]) for rim in panel.seen.polygons(region)]
-                axes.add_artist(
-                    LineCollection(
-                        rims, transform=axes.transAxes, colors=fill.face, linewidths=0.1 * self.type.head,
-                        joinstyle="round", zorder=4, gid=f"change-{region}",
-                    )
-                )  # fmt: skip
-            if self.shared:
-                _strip_inner(axes, number % self.columns > 0, number + self.columns < len(panels))
-            look = {"loc": "left", "fontsize": self.type.head, "color": INK, **heads}
-            axes.set_title("\n".join(panel.head), **look)
-        for axes in places[len(panels) :]:
-            axes.remove()
-        lay_out(figure, self.head, self.foot, self.what, self.least)
-        wide = float(figure.get_size_inches()[0])
-        for axes, panel in zip(places, panels, strict=False):
-            left = axes.get_position().x0 * wide
-            draw_legend(figure, panel.legend, left, self.foot - 0.1, self.type)
+    font, type = style.base_font, Type.of(style)
+    how = Dress(max(MIN_FONT, 0.95 * font), 1.05 * font, (4, 5), scale=font / 9)
+    what, look = "three maps with their legends do", {"fontweight": "bold"}
+    if shared:
+        how = Dress(max(MIN_FONT, 0.85 * font), 0.95 * font, (4, 4), scale=font / 9)
+        what, look = f"{len(panels)} maps do" if len(panels) > 1 else "the map does", {}
+    places: Any = figure.subplots(math.ceil(len(panels) / columns), columns, squeeze=False).flat
+    for number, (axes, panel) in enumerate(zip(places, panels, strict=False)):
+        paint_map(axes, panel.seen, f"{number}-", panel.paint)
+        view = panel.seen.view
+        dress(axes, panel.seen.result.slice, view.x, view.y, how)
+        draw_arrows(axes, panel.arrows, how.scale)
+        for region, fill in (panel.outlined or {}).items():
+            rims = [np.vstack([rim, rim[:1]]) for rim in panel.seen.polygons(region)]
+            axes.add_artist(
+                LineCollection(
+                    rims, transform=axes.transAxes, colors=fill.face, linewidths=0.1 * type.head,
+                    joinstyle="round", zorder=4, gid=f"change-{region}",
+                )
+            )  # fmt: skip
+        if shared and number % columns:
+            axes.set_ylabel("")
+            axes.tick_params(axis="y", labelleft=False)
+        if shared and number + columns < len(panels):
+            axes.set_xlabel("")
+            axes.tick_params(axis="x", labelbottom=False)
+        axes.set_title("\n".join(panel.head), loc="left", fontsize=type.head, color=INK, **look)
+    for axes in places[len(panels) :]:
+        axes.remove()
+    lay_out(figure, *ends, what, MIN_SIDE * font / 72 * (0.5 if shared else 1.0))
+    wide = float(figure.get_size_inches()[0])
+    for axes, panel in zip(places, panels, strict=False):
+        left = axes.get_position().x0 * wide
+        draw_legend(figure, panel.legend, left, ends[1] - 0.1, type)
 
 
 def lay_out(figure: Figure, head: float, foot: float, what: str, least: float) -> None:
@@ -155,52 +153,23 @@ def lay_out(figure: Figure, head: float, foot: float, what: str, least: float) -
         )  # fmt: skip
 
 
-def _strip_inner(axes: Any, has_left: bool, has_below: bool) -> None:
-    """Leave out numbers and names that a chart beside or below has."""
-    if has_left:
-        axes.set_ylabel("")
-        axes.tick_params(axis="y", labelleft=False)
-    if has_below:
-        axes.set_xlabel("")
-        axes.tick_params(axis="x", labelbottom=False)
+def head_and_foot(
+    title: str, legend: Sequence[Entry], wide: float, style: PictureStyle
+) -> tuple[float, float, Callable[[Figure], None]]:
+    """A title over what a page of a width in inches shows and a legend at its foot, as far as the
+    style wants them: the inches that they take, and what draws them.
+    """
+    type = Type.of(style)
+    em, step, inner = type.head / 72, LINE * type.line, wide - 1.2 * type.head / 72
+    titles = wrapped(title if style.title is None else style.title, inner, type.head, True)
+    rows = [] if style.legend is LegendPlace.NONE else in_rows(legend, inner, type)
 
+    def draw(figure: Figure) -> None:
+        at = 0.6 * em, float(figure.get_size_inches()[1]) - 0.9 * em
+        write_lines(figure, at, titles, type.head, 1.5 * em, fontweight="bold", color=INK)
+        draw_rows(figure, rows, (0.6 * em, 0.5 * em + len(rows) * step), step, type)
 
-@dataclass(frozen=True, slots=True)
-class HeadAndFoot:
-    """The lines of a title over what a page shows, and the rows of a legend at its foot."""
-
-    titles: Sequence[str]
-    rows: Rows
-    type: Type
-
-    @classmethod
-    def of(
-        cls, title: str, legend: Sequence[Entry], wide: float, style: PictureStyle, type: Type
-    ) -> HeadAndFoot:
-        """On a page of a width in inches, as far as the style wants them."""
-        inner = wide - 1.2 * type.head / 72
-        titles = wrapped(title if style.title is None else style.title, inner, type.head, True)
-        none = style.legend is LegendPlace.NONE
-        return cls(titles, [] if none else in_rows(legend, inner, type), type)
-
-    @property
-    def head(self) -> float:
-        """Inches that the title takes."""
-        return (1.5 * len(self.titles) + 0.4) * self.type.head / 72
-
-    @property
-    def foot(self) -> float:
-        """Inches that the legend takes."""
-        return LINE * self.type.line * len(self.rows) + 0.7 * self.type.head / 72
-
-    def draw(self, figure: Figure) -> None:
-        """Both at their places."""
-        em, step = self.type.head / 72, LINE * self.type.line
-        high = float(figure.get_size_inches()[1])
-        write_lines(
-            figure, (0.6 * em, high - 0.9 * em), self.titles, self.type.head, 1.5 * em, fontweight="bold", color=INK
-        )  # fmt: skip
-        draw_rows(figure, self.rows, (0.6 * em, 0.5 * em + len(self.rows) * step), step, self.type)
+    return (1.5 * len(titles) + 0.4) * em, step * len(rows) + 0.7 * em, draw
 
 
 SIDE = 1.75
@@ -255,41 +224,30 @@ def multiples_figure(family: FamilyMap, dpi: int, style: PictureStyle) -> Figure
     ConfigError
         When it does not fit into the style's size.
     """
-    with settings(style):
-        figure = _figure(family, dpi, style)
-    figure.set_label(f"{title_of(family)}\n{in_words(family)}")
-    return figure
-
-
-def _figure(family: FamilyMap, dpi: int, style: PictureStyle) -> Figure:
     font = style.base_font
-    em, small, scale = font / 72, max(MIN_FONT, 0.85 * font), font / 9
-    type = Type.of(style)
+    small, scale = max(MIN_FONT, 0.85 * font), font / 9
     seen = [shapes(result) for result in family.members]
     columns = _columns(len(seen), style.size)
     rows = math.ceil(len(seen) / columns)
     wide = style.size[0] if style.size is not None else (0.5 + columns * (SIDE + 0.2)) * scale
     side = (wide - 0.5 * scale) / columns - 0.2 * scale
-    marks = [arrows_of(shape, (side, side), dpi, small) for shape in seen]
-    thin = any(seen_thin_walls(shape, (72 * side, 72 * side)) for shape in seen)
-    paint = replace(paint_of(style, *family.members), thin_walls=thin)
-    legend = family_entries(family, paint, thin, sum(hidden for _, hidden in marks))
-    around = HeadAndFoot.of(title_of(family), legend, wide, style, type)
-    named = 1 + (len(seen) > columns and len(seen) % columns > 0)
-    height = around.head + around.foot + rows * (side + 0.25 * scale) + 0.45 * scale * named
-    size = style.size or (wide, height)
-    figure = Figure(figsize=size, dpi=dpi, facecolor="white", layout="constrained")
-    heads = [(value_text(family, value),) for value in family.values]
-    panels = [
-        Panel(shape, paint, text, arrows=found)
-        for shape, text, (found, _) in zip(seen, heads, marks, strict=True)
-    ]
-    how = Dress(small, 0.95 * font, (4, 4), scale=scale)
-    what = f"{len(seen)} maps do" if len(seen) > 1 else "the map does"
-    PanelGrid(columns, how, type, around.head, around.foot, what, 0.5 * MIN_SIDE * em).draw(
-        figure, panels
-    )
-    around.draw(figure)
+    with settings(style):
+        marks = [arrows_of(shape, (side, side), dpi, small) for shape in seen]
+        thin = any(seen_thin_walls(shape, (72 * side, 72 * side)) for shape in seen)
+        paint = replace(paint_of(style, *family.members), thin_walls=thin)
+        legend = family_entries(family, paint, thin, sum(hidden for _, hidden in marks))
+        head, foot, draw = head_and_foot(title_of(family), legend, wide, style)
+        named = 1 + (len(seen) > columns and len(seen) % columns > 0)
+        height = head + foot + rows * (side + 0.25 * scale) + 0.45 * scale * named
+        size = style.size or (wide, height)
+        figure = Figure(figsize=size, dpi=dpi, facecolor="white", layout="constrained")
+        panels = [
+            Panel(shape, paint, (value_text(family, value),), arrows=found)
+            for shape, value, (found, _) in zip(seen, family.values, marks, strict=True)
+        ]
+        draw_panels(figure, panels, columns, (head, foot), style)
+        draw(figure)
+    figure.set_label(f"{title_of(family)}\n{in_words(family)}")
     return figure
 
 

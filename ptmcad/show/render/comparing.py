@@ -15,18 +15,17 @@ from matplotlib.figure import Figure
 
 from ptmcad.answer.comparison import Bounds, Change, Comparison
 from ptmcad.answer.regionmap import RegionMap
-from ptmcad.show.render.axes import Dress, symbol
-from ptmcad.show.render.chartgrid import LINE, Panel, PanelGrid
+from ptmcad.show.render.axes import symbol
+from ptmcad.show.render.chartgrid import LINE, Panel, draw_panels
 from ptmcad.show.render.colours import GREYS, HATCHES, Fill, Paint, paint_of, undetermined_fill
-from ptmcad.show.render.fitting import MIN_SIDE, rewrapped
+from ptmcad.show.render.fitting import rewrapped
 from ptmcad.show.render.inches import few, wrapped
 from ptmcad.show.render.legend import Entry, Type, entries, hidden_entries
 from ptmcad.show.render.mappicture import whole_title
 from ptmcad.show.render.outline import shapes
 from ptmcad.show.render.printing import settings
 from ptmcad.show.render.slivers import arrows_of, seen_thin_walls
-from ptmcad.show.render.view import Shapes
-from ptmcad.show.style import MIN_FONT, LegendPlace, PictureStyle, Size
+from ptmcad.show.style import LegendPlace, PictureStyle, Size
 from ptmcad.show.table import area_text, count_text
 from ptmcad.text.numerals import Numbers, percent, share_text, shortest_text
 
@@ -100,37 +99,22 @@ def comparison_figure(comparison: Comparison, dpi: int, style: PictureStyle) -> 
     ConfigError
         When it does not fit into the style's size.
     """
+    em = style.base_font / 72
+    width = style.widest if style.widest is not None else 3 * (SIDE * style.base_font / 9 + 6 * em)
+    side, given = width / 3 - 5.5 * em, style.size if style.wide is None else None
     with settings(style):
-        return _figure(comparison, dpi, style)
-
-
-def _figure(comparison: Comparison, dpi: int, style: PictureStyle) -> Figure:
-    font = style.base_font
-    em = font / 72
-    type = Type.of(style)
-    first = shapes(comparison.first)
-    width = style.widest if style.widest is not None else 3 * (SIDE * font / 9 + 6 * em)
-    side = width / 3 - 5.5 * em
-    given = style.size is not None and style.wide is None
-    seen_sides = (side, style.size[1] / 2 if given and style.size is not None else side)
-    panels = _panels(comparison, first, style, seen_sides, dpi)
-    foot = max(type.height(panel.legend) for panel in panels) + 0.2
-    heads = LINE * em * max(len(panel.head) for panel in panels)
-    tall = side + foot + heads + 4.5 * em
-    size = style.size if given and style.size is not None else (width, tall)
-    figure = Figure(figsize=size, dpi=dpi, facecolor="white", layout="constrained")
-    how = Dress(max(MIN_FONT, 0.95 * font), 1.05 * font, (4, 5), scale=font / 9)
-    what = "three maps with their legends do"
-    grid = PanelGrid(3, how, type, 0.0, foot, what, MIN_SIDE * em, shared=False)
-    grid.draw(figure, panels, fontweight="bold")
+        panels = _panels(comparison, style, (side, given[1] / 2 if given else side), dpi)
+        foot = max(Type.of(style).height(panel.legend) for panel in panels) + 0.2
+        heads = LINE * em * max(len(panel.head) for panel in panels)
+        size = given or (width, side + foot + heads + 4.5 * em)
+        figure = Figure(figsize=size, dpi=dpi, facecolor="white", layout="constrained")
+        draw_panels(figure, panels, 3, (0.0, foot), style, shared=False)
     title = f"{whole_title(comparison.first)} and {whole_title(comparison.second)}"
     figure.set_label(f"{title}\n{' '.join(difference_words(comparison))}")
     return figure
 
 
-def _panels(
-    comparison: Comparison, first: Shapes, style: PictureStyle, sides: Size, dpi: int
-) -> list[Panel]:
+def _panels(comparison: Comparison, style: PictureStyle, sides: Size, dpi: int) -> list[Panel]:
     """The two maps and the difference, with text as wide as they are."""
     type, side = Type.of(style), sides[0]
 
@@ -138,17 +122,16 @@ def _panels(
         title: str, legend: Iterable[Entry], names: Sequence[str] | None, **drawn: Any
     ) -> Panel:
         marks, hidden = arrows_of(drawn["seen"], sides, dpi, type.detail, names)
-        told = [*legend, *hidden_entries(hidden)]
-        without = style.legend is LegendPlace.NONE
-        below = [] if without else [rewrapped(entry, side, type) for entry in told]
+        below = [rewrapped(entry, side, type) for entry in (*legend, *hidden_entries(hidden))]
+        if style.legend is LegendPlace.NONE:
+            below = []
         head = few(wrapped(title, side, type.head, True), _MAX_HEAD)
         return Panel(head=head, legend=below, arrows=marks, **drawn)
 
     found = []
     pair = (comparison.first, comparison.second)
-    for letter, own, result, seen in zip(
-        LETTERS, own_words(*pair), pair, (first, shapes(pair[1])), strict=True
-    ):
+    for letter, own, result in zip(LETTERS, own_words(*pair), pair, strict=True):
+        seen = shapes(result)
         thin = seen_thin_walls(seen, (72 * sides[0], 72 * sides[1]))
         paint = replace(paint_of(style, result), thin_walls=thin)
         title = whole_title(result) if style.title is None else own

@@ -14,7 +14,6 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,7 +23,7 @@ from ptmcad.cover import components
 from ptmcad.cover.complement import Components, outlines
 from ptmcad.cover.subdivision import FREE
 from ptmcad.show.render.polylines import simplified_polygons
-from ptmcad.show.render.view import CellShape, Floats, Same, View, WallShape
+from ptmcad.show.render.view import CellShape, Floats, View, WallShape, remembered
 
 TOLERANCE = 1.5e-4
 """Of the view's side; 0.05 pt where the side is 4.6 inches."""
@@ -54,7 +53,7 @@ class CoverOutline:
 
     def polygons(self, region: int, tolerance: float = 0.0) -> Iterator[Floats]:
         """The region's outlines; those around holes turn the other way."""
-        found = _polygons(Same(self), tolerance)
+        found = _polygons(self, tolerance)
         for cell in self.result.regions[region].cells:
             yield from found[cell]
 
@@ -62,7 +61,7 @@ class CoverOutline:
         """Every cell's outlines; with a tolerance those that collapse are among them, as a line or
         a point.
         """
-        for cell, found in enumerate(_polygons(Same(self), tolerance)):
+        for cell, found in enumerate(_polygons(self, tolerance)):
             if found:
                 yield cell, list(found)
 
@@ -82,20 +81,16 @@ class CoverOutline:
         """
         tree = self.complement.subdivision
         steps = tree.steps
-        places = []
-        for axis, shown, n in zip(
+        views = zip(
             self.result.slice.axes, (self.view.x, self.view.y), (columns, rows), strict=True
-        ):
-            start, step = (
-                axis.share(shown[0]) * steps,
-                (shown[1] - shown[0]) / axis.width * steps / n,
-            )
-            places.append(
-                np.array(
-                    [int(start + (k + Fraction(1, 2)) * step) for k in range(n)], dtype=np.int64
-                )
-            )
-        x, y = np.clip(places[0], 0, steps - 1), np.clip(places[1], 0, steps - 1)
+        )
+        x, y = (
+            np.array(
+                [int(start + (k + Fraction(1, 2)) * step) for k in range(n)], dtype=np.int64
+            ).clip(0, steps - 1)
+            for axis, (low, high), n in views
+            for start, step in [(axis.share(low) * steps, (high - low) / axis.width * steps / n)]
+        )
         leaf = tree.leaves_right_above(np.tile(x, rows), np.repeat(y, columns))
         free = tree.state[leaf] == FREE
         image = np.full(
@@ -105,14 +100,13 @@ class CoverOutline:
         return image.reshape(rows, columns)
 
 
-@lru_cache(maxsize=16)
-def _polygons(of: Same[CoverOutline], tolerance: float) -> tuple[tuple[Floats, ...], ...]:
+@remembered(16)
+def _polygons(seen: CoverOutline, tolerance: float) -> tuple[tuple[Floats, ...], ...]:
     """Each cell's outlines in the view: without a tolerance of one's own those that do not
     collapse.
 
     All at once, as the fill of every region and the lines along them ask for the same ones.
     """
-    seen = of.it
     found: list[list[Floats]] = [[] for _ in seen.result.cells]
     cells = np.array(
         [cell for cell, polygons in enumerate(seen.corners) for _ in polygons], dtype=np.int64
@@ -150,6 +144,7 @@ def _meets_view(low: Floats, high: Floats) -> NDArray[np.bool_]:
     return np.logical_and((high > 0).all(axis=-1), (low < 1).all(axis=-1))
 
 
+@remembered(8)
 def cover_outline(result: RegionMap) -> CoverOutline:
     """The outlines of a certified map over its whole window; traced once for several pictures of
     it.
@@ -160,12 +155,6 @@ def cover_outline(result: RegionMap) -> CoverOutline:
         When the map contradicts itself: a sample is in no component of its own, or a rectangle is
         none.
     """
-    return _cover_outline(Same(result))
-
-
-@lru_cache(maxsize=8)
-def _cover_outline(of: Same[RegionMap]) -> CoverOutline:
-    result = of.it
     assert result.cover is not None  # others have no such outline
     complement = components(result.cover)
     number_of = _components_of(result, complement)

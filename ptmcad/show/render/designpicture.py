@@ -20,11 +20,20 @@ from matplotlib.patches import Rectangle
 from ptmcad.answer.design import BestDesign
 from ptmcad.question.slice import Axis
 from ptmcad.show.designtable import design_table, value_text
-from ptmcad.show.render.axes import scale_of, symbol
+from ptmcad.show.render.axes import symbol
 from ptmcad.show.render.colours import INK
 from ptmcad.show.render.inches import write_lines
 from ptmcad.show.render.printing import settings
-from ptmcad.show.render.rangeplate import LEFT, RIGHT, SIZE, WIDE, axes_in, figure_of, scaled
+from ptmcad.show.render.rangeplate import (
+    LEFT,
+    RIGHT,
+    SIZE,
+    WIDE,
+    axes_in,
+    figure_of,
+    scaled,
+    scaled_axis,
+)
 
 TALL = 3.6
 BAR = 0.16
@@ -93,7 +102,7 @@ def _draw_curve(axes: Any, found: BestDesign) -> None:
     if found.best is not None and found.value is not None:
         at = scaled(found.best[over.name], over)
         axes.plot([at], [float(found.value)], "D", color=BEST, fillstyle="none", clip_on=False)
-    _label(axes, over, "x")
+    scaled_axis(axes.xaxis, over, "")
     axes.set_ylabel(_value_name(found), fontsize=SIZE + 2)
 
 
@@ -123,8 +132,8 @@ def _draw_plane(figure: Figure, axes: Any, found: BestDesign, foot: float) -> No
         place = [scaled(found.best[axis.name], axis) for axis in (first, second)]
         axes.plot(*[[x] for x in place], "D", color=BEST, markersize=8, markeredgewidth=1.6, fillstyle="none",
                   clip_on=False, zorder=4)  # fmt: skip
-    _label(axes, first, "x")
-    _label(axes, second, "y")
+    scaled_axis(axes.xaxis, first, "")
+    scaled_axis(axes.yaxis, second, "")
 
 
 def _rectangle(ranges: Any, first: Axis, second: Axis) -> Rectangle:
@@ -136,12 +145,6 @@ def _rectangle(ranges: Any, first: Axis, second: Axis) -> Rectangle:
         scaled(d, second),
     )
     return Rectangle((left, low), right - left, high - low)
-
-
-def _label(axes: Any, over: Axis, side: str) -> None:
-    scale = scale_of(over.low, over.high)
-    getattr(axes, f"set_{side}lim")(scale.low, scale.high)
-    getattr(axes, f"set_{side}label")(scale.name(symbol(over.name)), fontsize=SIZE + 2)
 
 
 def _value_name(found: BestDesign) -> str:

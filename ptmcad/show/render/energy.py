@@ -111,10 +111,6 @@ class UnknownAxis:
     def label(self) -> str:
         return with_unit(symbol(self.name), self.unit)
 
-    def share(self, value: float) -> float:
-        """Where a value lies, from 0 to 1."""
-        return (value - self.low) / (self.high - self.low)
-
     def copies(self, value: float) -> tuple[float, ...]:
         return copies(value) if self.is_angle else (value,)
 

@@ -21,11 +21,11 @@ from ptmcad.answer.boundaries import NONE, Boundary
 from ptmcad.answer.field import Field
 from ptmcad.answer.regionmap import RegionMap
 from ptmcad.show.render.axes import dress, scale_of, with_symbols
-from ptmcad.show.render.chartgrid import HeadAndFoot, lay_out
+from ptmcad.show.render.chartgrid import head_and_foot, lay_out
 from ptmcad.show.render.colours import INK, RIM_INK, STRONG, Fill, undetermined_fill
 from ptmcad.show.render.fieldlines import contour_lines, pixel_edges
 from ptmcad.show.render.fitting import MIN_SIDE, dressed
-from ptmcad.show.render.legend import Entry, Type, line_mark
+from ptmcad.show.render.legend import Entry, line_mark
 from ptmcad.show.render.printing import settings
 from ptmcad.show.render.view import Floats, View
 from ptmcad.show.style import DEFAULT, MIN_FONT, PictureStyle
@@ -81,43 +81,31 @@ def field_figure(
     ConfigError
         When it does not fit into the style's size.
     """
-    with settings(style):
-        return _figure(result, field, boundaries, contours, dpi, style)
-
-
-def _figure(
-    result: RegionMap,
-    field: Field,
-    boundaries: Sequence[Boundary],
-    contours: int,
-    dpi: int,
-    style: PictureStyle,
-) -> Figure:
     font = style.base_font
     size = style.size or (SIZE[0] * font / 9, SIZE[1] * font / 9)
-    figure = Figure(figsize=size, dpi=dpi, facecolor="white", layout="constrained")
-    axes: Any = figure.add_subplot(gid="map")
-    axes.set_facecolor(_EMPTY)
-    known = field.known
     view = View.whole(result)
-    if (field.region == NONE).any():
-        fill_empty(axes, field, _extent(view), undetermined_fill(style.palette))
-    if known.size:
-        _fill(figure, axes, field, view, contours, style)
-    else:
-        axes.text(
-            0.5, 0.5, _absent(field), transform=axes.transAxes, ha="center", color=INK, fontsize=font, zorder=5,
-            bbox={"facecolor": "white", "edgecolor": "none"},
-        )  # fmt: skip
-    for boundary in boundaries:
-        if boundary.separates:
-            shares = _shares(result, boundary.points)
-            axes.plot(*shares.T, color=INK, linewidth=style.strong, transform=axes.transAxes)
-    dress(axes, result.slice, view.x, view.y, dressed(font, (0.6 * size[0], 0.6 * size[1])))
-    legend = _legend(result, field, boundaries, style)
-    around = HeadAndFoot.of(title_of(result, field), legend, size[0], style, Type.of(style))
-    lay_out(figure, around.head, around.foot, "the map with its scale does", MIN_SIDE * font / 72)
-    around.draw(figure)
+    with settings(style):
+        figure = Figure(figsize=size, dpi=dpi, facecolor="white", layout="constrained")
+        axes: Any = figure.add_subplot(gid="map")
+        axes.set_facecolor(_EMPTY)
+        if (field.region == NONE).any():
+            fill_empty(axes, field, _extent(view), undetermined_fill(style.palette))
+        if field.known.size:
+            _fill(figure, axes, field, view, contours, style)
+        else:
+            axes.text(
+                0.5, 0.5, _absent(field), transform=axes.transAxes, ha="center", color=INK, fontsize=font, zorder=5,
+                bbox={"facecolor": "white", "edgecolor": "none"},
+            )  # fmt: skip
+        for boundary in boundaries:
+            if boundary.separates:
+                shares = _shares(result, boundary.points)
+                axes.plot(*shares.T, color=INK, linewidth=style.strong, transform=axes.transAxes)
+        dress(axes, result.slice, view.x, view.y, dressed(font, (0.6 * size[0], 0.6 * size[1])))
+        legend = _legend(result, field, boundaries, style)
+        head, foot, draw = head_and_foot(title_of(result, field), legend, size[0], style)
+        lay_out(figure, head, foot, "the map with its scale does", MIN_SIDE * font / 72)
+        draw(figure)
     figure.set_label(f"{title_of(result, field)}\n{description(field)}")
     return figure
 
@@ -204,7 +192,11 @@ def _legend(
     result: RegionMap, field: Field, boundaries: Sequence[Boundary], style: PictureStyle
 ) -> list[Entry]:
     """What lines, white and grey mean, as far as they are there."""
-    legend = [Entry(("the count changes",), STRONG)] if any(b.separates for b in boundaries) else []
+    legend = []
+    if any(boundary.separates for boundary in boundaries):
+        # of the counts on both sides of what a certified map leaves open nothing is known
+        words = "the count changes" if result.cover is None else "edge of the undetermined part"
+        legend.append(Entry((words,), STRONG))
     if any(jump.any() for jump in field.jumps or ()):
         legend.append(Entry((f"the branch of {pose_words(result, field)} changes",), _edge_mark))
     unknown = field.region == NONE

@@ -43,6 +43,12 @@ REST = 0.8
 """Seconds for which the first and the last picture stand."""
 COLOURS, SAMPLES = 128, 6
 """Of a GIF, chosen from so many of its pictures."""
+Pictures = tuple[int, Callable[[int], Pixels]]
+"""How many there are, and each by its number."""
+
+
+def _of_motion(motion: Motion, style: PictureStyle, dpi: int) -> Pictures:
+    return len(motion.steps), Stage(motion, style, dpi).frame
 
 
 def save_film(motion: Motion, path: Path, style: PictureStyle, fps: int, dpi: int) -> None:
@@ -56,17 +62,15 @@ def save_film(motion: Motion, path: Path, style: PictureStyle, fps: int, dpi: in
     OSError
         When the file cannot be written.
     """
-    save_pictures(lambda: Stage(motion, style, dpi), path, style, fps)
+    save_pictures(lambda: _of_motion(motion, style, dpi), path, style, fps)
 
 
-def save_pictures(
-    make: Callable[[], Stage | SweepFilm], path: Path, style: PictureStyle, fps: int
-) -> None:
+def save_pictures(make: Callable[[], Pictures], path: Path, style: PictureStyle, fps: int) -> None:
     """Write pictures one after the other as a file, whose suffix gives the format.
 
     Parameters
     ----------
-    make : gives the pictures, within the style's settings.
+    make : gives the number of pictures and each of them, within the style's settings.
 
     Raises
     ------
@@ -90,16 +94,16 @@ def save_pictures(
 def gif_bytes(motion: Motion, style: PictureStyle, fps: int, dpi: int) -> bytes:
     """The motion as the content of an animated GIF."""
     with settings(style):
-        return _gif(Stage(motion, style, dpi), fps)
+        return _gif(_of_motion(motion, style, dpi), fps)
 
 
-def _gif(pictures: Stage | SweepFilm, fps: int) -> bytes:
+def _gif(pictures: Pictures, fps: int) -> bytes:
     """The content of an animated GIF, in the same colours throughout, so that nothing flickers."""
-    number = len(pictures)
+    number, picture = pictures
     chosen = sorted({round(k * (number - 1) / (SAMPLES - 1)) for k in range(SAMPLES)})
-    sample = Image.fromarray(np.concatenate([pictures.frame(k) for k in chosen]))
+    sample = Image.fromarray(np.concatenate([picture(k) for k in chosen]))
     palette = sample.quantize(COLOURS, method=Image.Quantize.MEDIANCUT, dither=Image.Dither.NONE)
-    frames = (Image.fromarray(pictures.frame(k)) for k in range(number))
+    frames = (Image.fromarray(picture(k)) for k in range(number))
     drawn = [frame.quantize(palette=palette, dither=Image.Dither.NONE) for frame in frames]
     pause = max(2, round(100 / fps)) * 10  # hundredths of a second are what the format knows
     durations = [pause] * len(drawn)
@@ -117,11 +121,12 @@ def _gif(pictures: Stage | SweepFilm, fps: int) -> bytes:
     return data.getvalue()
 
 
-def _write_mp4(pictures: Stage | SweepFilm, path: Path, fps: int) -> None:
+def _write_mp4(pictures: Pictures, path: Path, fps: int) -> None:
     """Give ffmpeg one picture after the other."""
     program, rest = require_ffmpeg(), round(REST * fps)
+    last, picture = pictures[0] - 1, pictures[1]
     with tempfile.TemporaryFile() as said:
-        tall, wide, _ = pictures.frame(0).shape
+        tall, wide, _ = picture(0).shape
         command = [
             program, "-loglevel", "error", "-nostats", "-y",
             "-f", "rawvideo", "-pix_fmt", "rgb24", "-s", f"{wide}x{tall}", "-r", str(fps), "-i", "-",
@@ -129,13 +134,12 @@ def _write_mp4(pictures: Stage | SweepFilm, path: Path, fps: int) -> None:
             "-vf", "pad=ceil(iw/2)*2:ceil(ih/2)*2:color=white", "-pix_fmt", "yuv420p", "-movflags", "+faststart",
             "-f", "mp4", str(path),
         ]  # fmt: skip
-        last = len(pictures) - 1
         numbers = [*[0] * rest, *range(last + 1), *[last] * rest]
         process = subprocess.Popen(command, stdin=PIPE, stdout=DEVNULL, stderr=said)
         assert process.stdin is not None  # a pipe
         with suppress(BrokenPipeError), process:  # where it has ended before, its status tells
             for number in numbers:
-                process.stdin.write(pictures.frame(number).tobytes())
+                process.stdin.write(picture(number).tobytes())
         if process.returncode:
             said.seek(0)
             words = " ".join(said.read().decode(errors="replace").split())[-300:]
@@ -150,43 +154,39 @@ _MAX_LENGTH = 90
 """Characters of the values above a map."""
 
 
-class SweepFilm:
-    """The pictures; to be used within `printing.settings`.
+def sweep_pictures(
+    maps: Callable[[int], RegionMap], values: Sequence[Mapping[str, str]]
+) -> Pictures:
+    """The pictures of a sweep; to be used within `printing.settings`.
 
     Parameters
     ----------
     maps : gives each map when it is drawn, so that only one of them is in memory.
     values : of what is swept, for each map.
     """
+    fills: dict[str, Fill] = {}
+    head: tuple[str, ...] = ("",)
+    for number in range(len(values)):
+        result = maps(number)
+        fills |= fills_by_count(paint_of(DEFAULT, result), result)
+        head = head_of(result.slice)[:1]
+    counts = (Entry((text,), fills[text]) for text in sorted(fills, key=in_order))
+    legend = [Entry(head, strong=True), *counts]
 
-    def __init__(
-        self, maps: Callable[[int], RegionMap], values: Sequence[Mapping[str, str]]
-    ) -> None:
-        self.maps, self.values = maps, values
-        fills: dict[str, Fill] = {}
-        head: tuple[str, ...] = ("",)
-        for number in range(len(values)):
-            result = maps(number)
-            fills |= fills_by_count(paint_of(DEFAULT, result), result)
-            head = head_of(result.slice)[:1]
-        told = (Entry((text,), fills[text]) for text in sorted(fills, key=in_order))
-        self.legend = [Entry(head, strong=True), *told]
-
-    def __len__(self) -> int:
-        return len(self.values)
-
-    def frame(self, number: int) -> Pixels:
+    def frame(number: int) -> Pixels:
         figure = Figure(figsize=SIZE, dpi=_DPI, facecolor="white")
-        result = self.maps(number)
+        result = maps(number)
         text = ",  ".join(
-            f"{symbol(n)} = {shortest_text(fraction_of(v))}" for n, v in self.values[number].items()
+            f"{symbol(n)} = {shortest_text(fraction_of(v))}" for n, v in values[number].items()
         )
         head = text if len(text) <= _MAX_LENGTH else f"{text[:_MAX_LENGTH]}…"
         axes, seen = axes_at(figure, _CHART), shapes(result)
         paint_map(axes, seen, "", paint_of(DEFAULT, result))
         dress(axes, result.slice, seen.view.x, seen.view.y)
         write(figure, _HEAD, head, 12, color=INK)
-        draw_legend(figure, self.legend, *_KEY)
+        draw_legend(figure, legend, *_KEY)
         canvas: Any = FigureCanvasAgg(figure)
         canvas.draw()
         return np.asarray(canvas.buffer_rgba())[..., :3].copy()
+
+    return len(values), frame

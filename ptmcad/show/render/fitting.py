@@ -10,9 +10,8 @@ Measured, not guessed: widths of text in its font, and what numbers and names ta
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass, field, replace
-from functools import lru_cache
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
 from math import ceil
 from typing import Any
 
@@ -27,7 +26,7 @@ from ptmcad.show.render.inches import ALLOWANCE, Box, few, wrapped
 from ptmcad.show.render.labels import Position
 from ptmcad.show.render.layout import Layout
 from ptmcad.show.render.legend import Entry, Type
-from ptmcad.show.render.view import Same, View
+from ptmcad.show.render.view import View, remembered
 from ptmcad.show.style import MIN_FONT, LegendPlace, PictureStyle, Size
 
 MIN_SIDE = 11.0
@@ -41,12 +40,7 @@ _COLUMNS = (24.0, 18.0, 14.0, 11.0, 8.5)
 _INSET = (9.0, 6.0)
 """An inset's least sides, in widths of an m."""
 _STEPS, _STEP = 60, 1.05
-_LOOK = ("axes", "font", "mathtext", "text", "xtick", "ytick")
 MAX_TITLE_LINES = 2
-
-
-Measured = tuple[Box, Size]
-"""Spaces around axes, and the lengths of their names."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,7 +53,6 @@ class PageParts:
     legends : the legend's entries with areas, and without.
     views : of the whole map and of the insets.
     size, font : of the page in inches, and of its text in points.
-    measured : what has been found out about axes; filled while the parts are laid out.
     """
 
     slice: Slice
@@ -69,7 +62,6 @@ class PageParts:
     style: PictureStyle
     size: Size = (0.0, 0.0)
     font: float = 9.0
-    measured: dict[tuple[View, Dress], Measured] = field(default_factory=dict)
 
     @property
     def em(self) -> float:
@@ -90,10 +82,6 @@ class PageParts:
     @property
     def inset_size(self) -> float:
         return _points(0.83 * self.font)
-
-    def dressed(self, width: float, height: float, small: bool = False) -> Dress:
-        """Sizes at axes of these sides, with as many numbers as there is room for."""
-        return dressed(self.font, (width, height), small)
 
     def titles(self) -> list[str]:
         return few(
@@ -121,8 +109,8 @@ class PageParts:
         return Layout(
             size=self.size, chart=chart, title=self.titles(),
             title_at=(self.rim, self.size[1] - self.rim - self.title_line / 2), title_line=self.title_line,
-            legend=legend, insets=insets, type=self.type, axes=self.dressed(chart[2], chart[3]),
-            inset_axes=self.dressed(inset[2], inset[3], small=True), title_size=self.title_size,
+            legend=legend, insets=insets, type=self.type, axes=dressed(self.font, chart[2:]),
+            inset_axes=dressed(self.font, inset[2:], small=True), title_size=self.title_size,
             inset_size=self.inset_size, arrow_size=_points(0.89 * self.font),
         )  # fmt: skip
 
@@ -141,17 +129,21 @@ def fitted(parts: PageParts, size: Size) -> Layout:
         found = _on(replace(parts, size=size, font=font))
         if found is not None:
             return found
-    larger = size
-    for _ in range(_STEPS):
-        larger = (larger[0] * _STEP, larger[1] * _STEP)
-        if _on(replace(parts, size=larger, font=_fonts(style)[-1])) is not None:
+    for least in larger(size):
+        if _on(replace(parts, size=least, font=_fonts(style)[-1])) is not None:
             break
     raise ConfigError(
         f"axes and legend do not fit into {_inches(size)} in text of {_fonts(style)[-1]:g} points; "
-        f"the least size of this shape that does is {_inches(larger, up=True)}"
+        f"the least size of this shape that does is {_inches(least, up=True)}"
         + ("" if style.legend is LegendPlace.NONE else ", or leave the legend out"),
         key="size",
     )
+
+
+def larger(size: Size) -> Iterator[Size]:
+    """Sizes of the same shape, each a twentieth larger than the one before."""
+    for step in range(1, _STEPS):
+        yield size[0] * _STEP**step, size[1] * _STEP**step
 
 
 def _inches(size: Size, up: bool = False) -> str:
@@ -297,7 +289,7 @@ def _chart(page: PageParts, width: float, height: float) -> Box | None:
     for _ in range(3):  # what numbers take depends on how many there are, hence on the sides
         if min(inner) < MIN_SIDE * page.em:
             return None
-        left, below, right, _above = overhang(page, page.views[0], inner, page.dressed(*inner))
+        left, below, right, _above = overhang(page, page.views[0], inner, dressed(page.font, inner))
         inner = (width - left - right, height - below)
     if min(inner) < MIN_SIDE * page.em:
         return None
@@ -332,7 +324,8 @@ def _inset_overhang(page: PageParts) -> Box:
     """What numbers and names of the insets' axes take: the most of all."""
     sides = (_INSET[0] * page.em, _INSET[1] * page.em)
     found = [
-        overhang(page, view, sides, page.dressed(*sides, small=True)) for view in page.views[1:]
+        overhang(page, view, sides, dressed(page.font, sides, small=True))
+        for view in page.views[1:]
     ]
     left, below, right, above = (max(of[k] for of in found) for k in range(4))
     return left, below + 0.3 * page.em, right, above
@@ -342,28 +335,23 @@ def overhang(parts: PageParts, view: View, sides: Size, how: Dress) -> Box:
     """Inches that numbers and names take at the left, below, at the right and above axes of these
     sides.
     """
-    key = (view, how)
-    if key not in parts.measured:
-        parts.measured[key] = _measured(Same(parts.slice), view, how, _look())
-    (left, below, right, above), names = parts.measured[key]
+    family = tuple(rcParams["font.family"])
+    (left, below, right, above), names = _measured(parts.slice, view, how, family)
     # a name may be longer than its axis
     beyond = [max(0.0, (name - side) / 2) for name, side in zip(names, sides, strict=True)]
     return max(left, beyond[0]), max(below, beyond[1]), max(right, beyond[0]), max(above, beyond[1])
 
 
-def _look() -> tuple[str, ...]:
-    """The settings on which it depends how large axes are with all that belongs to them."""
-    return tuple(f"{key}: {value}" for key, value in rcParams.items() if key.startswith(_LOOK))
-
-
-@lru_cache(maxsize=512)
-def _measured(of: Same[Slice], view: View, how: Dress, _: tuple[str, ...]) -> Measured:
-    """The same for axes long enough for their names, and the lengths of these, under such settings."""
+@remembered(512)
+def _measured(slice: Slice, view: View, how: Dress, _: tuple[str, ...]) -> tuple[Box, Size]:
+    """The same for axes long enough for their names, and the lengths of these, in fonts of these
+    families.
+    """
     figure = Figure(figsize=(24.0, 24.0), dpi=72)
     canvas: Any = FigureCanvasAgg(figure)
     renderer = canvas.get_renderer()
     axes: Any = figure.add_axes((1 / 3, 1 / 3, 1 / 3, 1 / 3))
-    dress(axes, of.it, view.x, view.y, how)
+    dress(axes, slice, view.x, view.y, how)
     spaces = beside(figure, axes)
     names = (
         axes.xaxis.label.get_window_extent(renderer).width / 72,

@@ -40,6 +40,22 @@ def write_lines(
         write(figure, (at[0], at[1] - k * step), line, size, **look)
 
 
+TITLE_LINE = 0.22
+"""Inches of a line of a title."""
+
+
+def titled(title: Sequence[str], words: str, size: Position, left: float, rim: float) -> Any:
+    """A page of a size in inches with a title in lines at its top, below a rim, and a description in
+    words.
+    """
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=size, facecolor="white")
+    figure.set_label(f"{' '.join(title)}\n{words}")
+    write_lines(figure, (left, size[1] - rim - TITLE_LINE / 2), title, 11, TITLE_LINE)
+    return figure
+
+
 def stroke(figure: Any, xs: Sequence[float], ys: Sequence[float], **look: Any) -> None:
     """A line through points, or one point with a marker."""
     from matplotlib.lines import Line2D

@@ -8,7 +8,7 @@ stands where it meets the fewest. Which labels are clear of all boxes and others
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 from math import atan2, cos, hypot, pi, sin
 
@@ -22,19 +22,22 @@ _NEAR = 11.0
 """Points: a label that is farther from its point than this has a line that leads to it."""
 
 
-@dataclass(frozen=True, slots=True)
-class Stroke:
-    """A straight line from ``start`` to ``end`` with half its width, all in points."""
-
-    start: Position
-    end: Position
-    half: float
+Stroke = tuple[Position, Position, float]
+"""A straight line from its start to its end with half its width, all in points."""
 
 
 @dataclass(frozen=True, slots=True)
 class Label:
-    """A text and the point that it names; half its width and height; the direction that it had best
-    lie in; whether a line to it may lie across strokes.
+    """A text and the point that it names, and where it is placed.
+
+    Attributes
+    ----------
+    half : half its width and height.
+    towards : the direction that it had best lie in.
+    across : whether a line to it may lie across strokes.
+    center : its centre, once it is placed.
+    leader : the end of a line that leads from its point to it when it lies far from there.
+    clear : whether label and line meet no box, and no label that was placed before.
     """
 
     text: str
@@ -42,31 +45,20 @@ class Label:
     half: Position
     towards: Position = (1.0, 0.0)
     across: bool = True
-
-
-@dataclass(frozen=True, slots=True)
-class Placed:
-    """A label's centre, and the end of a line that leads from its point to it when it lies far from
-    there.
-
-    ``clear`` says whether label and line meet no box, and no label that was placed before.
-    """
-
-    label: Label
-    center: Position
+    center: Position = (0.0, 0.0)
     leader: Position | None = None
     clear: bool = False
 
     @property
     def box(self) -> Box:
         """What the label covers."""
-        return around(self.center, self.label.half)
+        return around(self.center, self.half)
 
 
 def polyline(points: Sequence[Position], half: float) -> Iterator[Stroke]:
     """The strokes of a line through the points."""
     for start, end in pairwise(points):
-        yield Stroke(start, end, half)
+        yield start, end, half
 
 
 def place(
@@ -76,8 +68,8 @@ def place(
     bounds: Box,
     distances: Sequence[float] = DISTANCES,
     skip: bool = False,
-) -> list[Placed]:
-    """Places for the labels, one after the other.
+) -> list[Label]:
+    """The labels at their places, found one after the other.
 
     Parameters
     ----------
@@ -95,7 +87,7 @@ def place(
             continue
         taken.append(placed.box)
         if placed.leader is not None:
-            drawn.append(Stroke(label.at, placed.leader, 0.5))
+            drawn.append((label.at, placed.leader, 0.5))
     return result
 
 
@@ -105,8 +97,8 @@ def _best(
     boxes: Sequence[Box],
     bounds: Box,
     distances: Sequence[float],
-) -> Placed:
-    least, best = (len(strokes) + len(boxes) + 1, 0), Placed(label, label.at)
+) -> Label:
+    least, best = (len(strokes) + len(boxes) + 1, 0), replace(label, center=label.at)
     for distance, wanted in _candidates(label, distances):
         center = _within(wanted, label.half, bounds)
         box = around(center, label.half)
@@ -117,13 +109,14 @@ def _best(
         leader, passed = None, 0
         if distance > _NEAR:
             leader = _edge(label.at, box)
-            line = Stroke(label.at, leader, 0.5)
+            line = label.at, leader, 0.5
             passed = sum(crosses(line, other) for other in boxes if not holds(other, label.at))
             on_boxes += passed
             if not label.across:
                 passed += sum(touch(line, stroke) for stroke in strokes)
         if (covered, passed) < least:
-            least, best = (covered, passed), Placed(label, center, leader, not on_boxes)
+            least = covered, passed
+            best = replace(label, center=center, leader=leader, clear=not on_boxes)
             if least == (0, 0):
                 break
     return best
@@ -183,10 +176,10 @@ def crosses(stroke: Stroke, box: Box) -> bool:
     """Whether a stroke meets a box: its middle line is clipped to the box, which is made larger by
     half the width.
     """
-    low, high = 0.0, 1.0
+    (start, end, half), low, high = stroke, 0.0, 1.0
     for k in (0, 1):
-        origin, step = stroke.start[k], stroke.end[k] - stroke.start[k]
-        near, far = box[k] - stroke.half, box[k + 2] + stroke.half
+        origin, step = start[k], end[k] - start[k]
+        near, far = box[k] - half, box[k + 2] + half
         if abs(step) < 1e-12:
             if not near < origin < far:
                 return False
@@ -202,7 +195,7 @@ def crosses(stroke: Stroke, box: Box) -> bool:
 
 def distance(point: Position, stroke: Stroke) -> float:
     """From a point to a stroke's middle line."""
-    (ax, ay), (bx, by) = stroke.start, stroke.end
+    (ax, ay), (bx, by), _ = stroke
     dx, dy = bx - ax, by - ay
     square = dx * dx + dy * dy
     t = (
@@ -215,7 +208,7 @@ def distance(point: Position, stroke: Stroke) -> float:
 
 def touch(one: Stroke, other: Stroke) -> bool:
     """Whether two strokes' middle lines have a point in common."""
-    a, b, c, d = one.start, one.end, other.start, other.end
+    (a, b, _), (c, d, _) = one, other
     if any(max(a[k], b[k]) < min(c[k], d[k]) or max(c[k], d[k]) < min(a[k], b[k]) for k in (0, 1)):
         return False
     return _turn(a, b, c) * _turn(a, b, d) <= 0 and _turn(c, d, a) * _turn(c, d, b) <= 0

@@ -16,14 +16,13 @@ poses.
 from __future__ import annotations
 
 import textwrap
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from fractions import Fraction
 from itertools import pairwise, product
 from math import dist
 from typing import Any
 
 import numpy as np
-from matplotlib.collections import LineCollection
 from matplotlib.colors import BoundaryNorm, LinearSegmentedColormap
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
@@ -36,10 +35,11 @@ from ptmcad.show.drawable import no_landscape
 from ptmcad.show.render.axes import scale_of, symbol, ticks
 from ptmcad.show.render.colours import INK
 from ptmcad.show.render.energy import Energy, UnknownAxis, copies, drawn, is_cut, place_of, sides_of
-from ptmcad.show.render.inches import axes_at
-from ptmcad.show.render.labels import Box, Label, Position, Stroke, place
+from ptmcad.show.render.inches import TITLE_LINE, axes_at, titled
+from ptmcad.show.render.labels import Box, Label, Position, around, place, polyline
 from ptmcad.show.render.legend import Entry, draw_legend, point_mark
-from ptmcad.show.render.posepicture import TITLE_LINE, empty, titled
+from ptmcad.show.render.posepicture import MARGIN as POSE_MARGIN
+from ptmcad.show.render.posepicture import empty
 from ptmcad.show.render.posewords import describe, heading, kind, value_text
 from ptmcad.show.render.printing import settings
 from ptmcad.show.render.view import Floats
@@ -65,10 +65,6 @@ _MARKERS = {
 }
 
 _PLURALS = {"stable (minimum)": "stable (minima)", "saddle": "saddles", "maximum": "maxima"}
-_NUMBER: dict[str, Any] = {
-    "fontsize": 9, "fontweight": "bold", "color": INK, "ha": "center", "va": "center", "zorder": 7,
-}  # fmt: skip
-"""How an equilibrium's number is written."""
 _COLUMNS = 90
 """Characters of a line of the title."""
 _SPACE = "\N{NO-BREAK SPACE}"
@@ -104,22 +100,13 @@ def _draw_curve(poses: Poses, shown: Sequence[Pose]) -> Figure:
         axes.plot(values, heights, color=_COLOURS[0], linewidth=1.6, zorder=3)
         room = 0.08 * float(np.ptp(heights)) or 1.0
         low, high = float(heights.min()) - room, float(heights.max()) + room
-        axes.set(xlim=(side.low, side.high), ylim=(low, high), xlabel=side.label)
-        if side.is_angle:
-            axes.set_xticks(range(-180, 181, 60))
+        axes.set_ylim(low, high)
+        _decorate(axes.xaxis, side)
         _energy_ticks(axes, energy, low, high, energy_unit(poses.model, poses.units))
-        for number, pose in enumerate(shown, 1):
-            (value,) = place_of(pose)
-            for k, x in enumerate(side.copies(value)):
-                gid = f"equilibrium-{number}" if k == 0 else None
-                _add_marker(axes, (x, energy.level(pose, (x,))), gid, **_marker(_kind(pose)))
-            x = side.copies(value)[0]
-            level = energy.level(pose, (x,))
-            inward = -1 if side.share(x) > 0.9 else 1
-            axes.annotate(
-                str(number), (x, level), xytext=(9 * inward, -11 if pose.stable else 11), textcoords="offset points",
-                gid=f"number-{number}", **_NUMBER,
-            )  # fmt: skip
+        places = [
+            [(x, energy.level(pose, (x,))) for (x,) in _copies((side,), pose)] for pose in shown
+        ]
+        _mark(axes, shown, places, np.stack([values, heights], axis=1))
         draw_legend(figure, tuple(_legend(poses, shown)), LEFT + SIDE + 2 * MARGIN, BOTTOM + SIDE)
     return figure
 
@@ -128,8 +115,8 @@ def _page(poses: Poses, beside: float, what: str) -> tuple[Figure, Any]:
     """The figure with so much room beside the landscape, and its axes."""
     title = _title(poses)
     size = (LEFT + SIDE + beside, BOTTOM + SIDE + TITLE_LINE * len(title) + 3 * MARGIN)
-    figure = titled(title, size, LEFT)
-    figure.set_label(f"{' '.join(title)}\n{drawn(poses)} over {what}. {describe(poses)}")
+    words = f"{drawn(poses)} over {what}. {describe(poses)}"
+    figure = titled(title, words, size, LEFT, POSE_MARGIN)
     return figure, axes_at(figure, (LEFT, BOTTOM, SIDE, SIDE), "landscape")
 
 
@@ -166,8 +153,9 @@ def _draw_contours(poses: Poses, shown: Sequence[Pose]) -> Figure:
         axes.contour(
             *finer, fine_heights, levels=through, colors=INK, linewidths=1.2, linestyles="solid"
         )
-        _decorate(axes, sides)
-        _mark(axes, sides, shown)
+        for axis, side in zip((axes.xaxis, axes.yaxis), sides, strict=True):
+            _decorate(axis, side)
+        _mark(axes, shown, [_copies(sides, pose) for pose in shown])
         bar = axes_at(figure, (LEFT + SIDE + 0.2, BOTTOM, 0.16, SIDE))
         figure.colorbar(filled, cax=bar, spacing="proportional", drawedges=False, ticks=[])
         _energy_ticks(bar, energy, levels[0], levels[-1], energy_unit(poses.model, poses.units))
@@ -178,12 +166,14 @@ def _draw_contours(poses: Poses, shown: Sequence[Pose]) -> Figure:
     return figure
 
 
-def _levels(energy: Energy, sides: Sequence[UnknownAxis], pose: Pose) -> list[float]:
+def _copies(sides: Sequence[UnknownAxis], pose: Pose) -> list[Any]:
     """Where a pose lies: once, and again at the other edge of an angle."""
-    places = product(
-        *(side.copies(value) for side, value in zip(sides, place_of(pose), strict=True))
-    )
-    return [energy.level(pose, place) for place in places]
+    shown = (side.copies(value) for side, value in zip(sides, place_of(pose), strict=True))
+    return list(product(*shown))
+
+
+def _levels(energy: Energy, sides: Sequence[UnknownAxis], pose: Pose) -> list[float]:
+    return [energy.level(pose, place) for place in _copies(sides, pose)]
 
 
 def _title(poses: Poses) -> list[str]:
@@ -230,67 +220,54 @@ def contour_levels(critical: Sequence[float], low: float, high: float) -> list[f
     return levels
 
 
-def _decorate(axes: Any, sides: Sequence[UnknownAxis]) -> None:
-    across, up = sides
-    axes.set(xlim=(across.low, across.high), ylim=(up.low, up.high))
-    axes.tick_params(labelsize=9, direction="out", length=3.5)
-    for axis, side in ((axes.xaxis, across), (axes.yaxis, up)):
-        if side.is_angle:
-            axis.set_ticks(range(-180, 181, 60))
-        axis.set_label_text(side.label, fontsize=11)
+def _decorate(axis: Any, side: UnknownAxis) -> None:
+    """An axis of matplotlib's that shows an unknown."""
+    axis.axes.set(**{f"{axis.axis_name}lim": (side.low, side.high)})
+    axis.set_tick_params(labelsize=9, direction="out", length=3.5)
+    if side.is_angle:
+        axis.set_ticks(range(-180, 181, 60))
+    axis.set_label_text(side.label, fontsize=11)
 
 
-def _mark(axes: Any, sides: Sequence[UnknownAxis], shown: Sequence[Pose]) -> None:
-    """A marker for each equilibrium, again at the opposite edge of an angle, and its number once."""
+def _mark(
+    axes: Any,
+    shown: Sequence[Pose],
+    places: Sequence[Sequence[Position]],
+    curve: Floats | None = None,
+) -> None:
+    """A marker at each place of each equilibrium, and its number, clear of the curve, at the first."""
     length = SIDE * 72
+    to_paper = axes.transData - axes.transAxes
 
-    def on_paper(place: Sequence[float]) -> Position:
-        x, y = (side.share(value) * length for side, value in zip(sides, place, strict=True))
-        return x, y
+    def on_paper(place: Any) -> Any:
+        return (to_paper.transform(place) * length).tolist()
 
-    def back(place: Sequence[float]) -> Position:
-        x, y = (s.low + v / length * (s.high - s.low) for s, v in zip(sides, place, strict=True))
-        return x, y
-
-    near = length / 72
-    places = [on_paper(first_copy(sides, pose)) for pose in shown]
+    first = [on_paper(own[0]) for own in places]
     boxes: list[Box] = []
-    for number, pose in enumerate(shown, 1):
-        own = first_copy(sides, pose)
+    for number, (pose, own) in enumerate(zip(shown, places, strict=True), 1):
         # what is drawn later on the same place would hide it: it stands out around that
-        look = _marker(
-            _kind(pose), _RING * sum(dist(places[number - 1], p) < near for p in places[number:])
-        )
-        first, second = place_of(pose)
-        for x in sides[0].copies(first):
-            for y in sides[1].copies(second):
-                _add_marker(
-                    axes, (x, y), f"equilibrium-{number}" if (x, y) == own else None, **look
-                )
-                (u, v), half = on_paper((x, y)), look["markersize"] / 2 + 1
-                boxes.append((u - half, v - half, u + half, v + half))
+        further = _RING * sum(dist(first[number - 1], p) < SIDE for p in first[number:])
+        look = _marker(_kind(pose), further)
+        for k, (x, y) in enumerate(own):
+            gid = None if k else f"equilibrium-{number}"
+            axes.add_artist(Line2D((x,), (y,), clip_on=False, zorder=6, gid=gid, **look))
+            half = look["markersize"] / 2 + 1
+            boxes.append(around(on_paper((x, y)), (half, half)))
     labels = []
-    for number, at in enumerate(places, 1):
+    for number, at in enumerate(first, 1):
         towards = (length / 2 - at[0] or 1.0, length / 2 - at[1] or 1.0)
         labels.append(Label(str(number), at, (3.4 * len(str(number)) + 2, 6.2), towards))
-    none: Iterable[Stroke] = ()
-    for placed in place(labels, none, boxes, (3.0, 3.0, length - 3, length - 3)):
-        x, y = back(placed.center)
+    strokes = () if curve is None else polyline(on_paper(curve), 0.8)
+    for placed in place(labels, strokes, boxes, (3.0, 3.0, length - 3, length - 3)):
+        x, y = (value / length for value in placed.center)
         if placed.leader is not None:
-            line = [back(end) for end in (placed.label.at, placed.leader)]
-            axes.add_collection(
-                LineCollection([line], colors=INK, linewidths=0.6, zorder=5), autolim=False
-            )
+            ends = np.array([placed.at, placed.leader]) / length
+            axes.plot(*ends.T, color=INK, linewidth=0.6, zorder=5, transform=axes.transAxes)
         axes.text(
-            x, y, placed.label.text, gid=f"number-{placed.label.text}", **_NUMBER,
+            x, y, placed.text, gid=f"number-{placed.text}", transform=axes.transAxes, fontsize=9,
+            fontweight="bold", color=INK, ha="center", va="center", zorder=7,
             bbox={"boxstyle": "round,pad=0.12", "facecolor": "white", "edgecolor": "none", "alpha": 0.85},
         )  # fmt: skip
-
-
-def first_copy(sides: Sequence[UnknownAxis], pose: Pose) -> Position:
-    """Where an equilibrium's number belongs."""
-    x, y = (side.copies(value)[0] for side, value in zip(sides, place_of(pose), strict=True))
-    return x, y
 
 
 def _kind(pose: Pose) -> str:
@@ -339,8 +316,3 @@ def _marker(kind: str, further: float = 0.0) -> dict[str, Any]:
     marker, size, face = _MARKERS[kind]
     return {"marker": marker, "markersize": size + further, "markerfacecolor": face, "markeredgecolor": INK,
             "markeredgewidth": 1.0, "linestyle": "none"}  # fmt: skip
-
-
-def _add_marker(axes: Any, place: Sequence[float], gid: str | None, **look: Any) -> None:
-    x, y = place
-    axes.add_artist(Line2D((x,), (y,), clip_on=False, zorder=6, gid=gid, **look))

@@ -7,19 +7,23 @@ of a given size. All places are in inches from the page's lower left corner.
 
 from __future__ import annotations
 
+import textwrap
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 from ptmcad.show.render.axes import SMALL, Dress
+from ptmcad.show.render.colours import STRONG, THIN
 from ptmcad.show.render.inches import Box
 from ptmcad.show.render.labels import Position
 from ptmcad.show.render.legend import Entry, Type
+from ptmcad.show.style import PictureStyle
 
 SIDE, LEFT, BOTTOM, COLUMN, GAP, MARGIN = 4.6, 0.85, 0.65, 2.6, 0.25, 0.15
 """In inches: the map's side, the space at its left and below, a column at its right, the space
 before, the rim.
 """
 INSET_WIDTH, INSET_HEIGHT, INSET_LEFT, INSET_BELOW, INSET_ABOVE = 1.75, 1.2, 0.62, 0.48, 0.42
+TITLE_COLUMNS, TITLE_LINES = 80, 3
 BLOCK = INSET_ABOVE + INSET_HEIGHT + INSET_BELOW
 TITLE_LINE = 0.22
 WIDEST = LEFT + SIDE + GAP + 2 * COLUMN + MARGIN
@@ -61,8 +65,17 @@ class Layout:
     shortened: bool = False
 
 
-def flowing(title: Sequence[str], legend: Sequence[Entry], type: Type, insets: int) -> Layout:
-    """The layout of a map of a fixed side, with the legend and insets at its right."""
+def title_lines(title: str) -> list[str]:
+    """Of a title over a picture that grows with what it shows."""
+    return textwrap.wrap(title, TITLE_COLUMNS, max_lines=TITLE_LINES, placeholder=" …")
+
+
+def flowing(heading: str, legend: Sequence[Entry], style: PictureStyle, insets: int) -> Layout:
+    """The layout of a map of a fixed side on a page that grows, with the legend and insets at its
+    right; `ptmcad.show.render.fitting` has that of a page of a given size.
+    """
+    title, thin = title_lines(heading), style.strong * THIN / STRONG
+    type = Type(strong=style.strong, thin=thin, thin_lines=style.thin_lines)
     below = type.height(legend) + 0.1
     high = max(SIDE + BOTTOM, below + 0.1, BLOCK)
     right, under = _places(insets, below, high)

@@ -25,12 +25,12 @@ from ptmcad.answer.regionmap import RegionMap
 from ptmcad.answer.words import noun, several
 from ptmcad.errors import ConfigError
 from ptmcad.show.render.axes import dress, heading_of
-from ptmcad.show.render.colours import INK, STRONG, THIN, Paint, paint_of
+from ptmcad.show.render.colours import INK, Paint, paint_of
 from ptmcad.show.render.fitting import PageParts, fitted
 from ptmcad.show.render.inches import Box, axes_at, write_lines
-from ptmcad.show.render.layout import SIDE, Layout, flowing
-from ptmcad.show.render.legend import Entry, Type, draw_legend, entries, hidden_entries
-from ptmcad.show.render.outline import shapes
+from ptmcad.show.render.layout import SIDE, Layout, flowing, title_lines
+from ptmcad.show.render.legend import Entry, draw_legend, entries, hidden_entries
+from ptmcad.show.render.outline import Shapes, shapes
 from ptmcad.show.render.overlay import Overlay, draw_overlay, overlay_entries
 from ptmcad.show.render.painting import paint_map
 from ptmcad.show.render.printing import save, settings
@@ -47,11 +47,9 @@ from ptmcad.show.render.slivers import (
     unstable_zooms,
     zooms,
 )
-from ptmcad.show.render.view import Shapes
 from ptmcad.show.style import DEFAULT, LegendPlace, PictureStyle, Size
 from ptmcad.show.table import area_text, areas_are_known, count_text, region_area
 
-TITLE_COLUMNS, TITLE_LINES = 80, 3
 _ZOOMED_COLUMNS = 34
 """Characters over an inset, most of them digits: as many as there is room for."""
 
@@ -119,16 +117,15 @@ class _Seen:
         result = self.whole.result
         named = [(sliver, _name_of(result, sliver, None)) for sliver in ranked]
         placed = arrows(self.whole, named, sides, size)
-        kept = [arrow.sliver for arrow in placed if arrow.clear]
+        kept = [sliver for sliver, clear, _ in placed if clear]
         if len(kept) == len(ranked):
             return self
         views = tuple(
-            replace(zoom, slivers=tuple(s for s in zoom.slivers if s in kept))
-            for zoom in self.views
+            (outline, tuple(s for s in slivers if s in kept)) for outline, slivers in self.views
         )
         parts = [sum(sliver.cell is not None for sliver in each) for each in (ranked, kept)]
         lines = parts[1] > 0 or seen_thin_walls(self.whole, sides)
-        views = tuple(zoom for zoom in views if zoom.slivers)
+        views = tuple(zoom for zoom in views if zoom[1])
         return replace(
             self, views=views, thin_lines=lines, unnamed=self.unnamed + parts[0] - parts[1]
         )
@@ -147,7 +144,7 @@ class _Seen:
 
     @property
     def marked(self) -> list[Sliver]:
-        return [sliver for zoom in self.views for sliver in zoom.slivers]
+        return [sliver for _, slivers in self.views for sliver in slivers]
 
 
 def _seen(whole: Shapes, sides: Size, dpi: int, earlier: _Seen | None = None) -> _Seen:
@@ -189,37 +186,31 @@ class MapDrawing(NamedTuple):
 
     def drawn(self) -> tuple[Figure, tuple[str, ...]]:
         """The picture, and what it leaves out."""
-        result, style = self.result, self.style
-        if style.flows:
-            seen = _seen(shapes(result), (SIDE, SIDE), self.dpi)
-            type = Type(
-                strong=style.strong, thin=style.strong * THIN / STRONG, thin_lines=style.thin_lines
-            )
-            legend = self.legend(seen)[0]
-            title = _lines(self.title)
-            layout = flowing(title, legend, type, len(seen.views))
-        else:
-            seen, layout = self.fit()
+        result = self.result
+        seen, layout = self.fit()
         figure = Figure(figsize=layout.size, dpi=self.dpi, facecolor="white")
-        figure.set_label(f"{' '.join(_lines(whole_title(result)))}\n{description(result)}")
+        figure.set_label(f"{' '.join(title_lines(whole_title(result)))}\n{description(result)}")
         self.draw_parts(figure, seen, layout)
         return figure, left_out(seen, layout)
 
     def fit(self) -> tuple[_Seen, Layout]:
-        """What is to be drawn on a page of a given size, and where.
+        """What is to be drawn, and where.
 
-        What is thin follows from the map's size, which follows from what has to be told about thin
-        regions.
+        On a page of a given size, what is thin follows from the map's size, which follows from what
+        has to be said of thin regions.
         """
         result, style, whole = self.result, self.style, shapes(self.result)
         wide, tall = style.size or (8.4, 5.7)
-        seen, tries = _seen(whole, (wide / 2, tall / 2), self.dpi), 3
+        sides = (SIDE, SIDE) if style.flows else (wide / 2, tall / 2)
+        seen, tries = _seen(whole, sides, self.dpi), 3
+        if style.flows:
+            return seen, flowing(self.title, self.legend(seen)[0], style, len(seen.views))
         while True:
             parts = PageParts(
                 result.slice,
                 self.title,
                 self.legend(seen),
-                (whole.view, *(zoom.outline.view for zoom in seen.views)),
+                (whole.view, *(outline.view for outline, _ in seen.views)),
                 style,
             )
             try:
@@ -286,7 +277,7 @@ class MapDrawing(NamedTuple):
         ]
         rest = iter(names)
         for zoom, box in zip(seen.views, layout.insets, strict=False):
-            _inset(figure, zoom, [next(rest) for _ in zoom.slivers], box, layout, paint)
+            _inset(figure, zoom, [next(rest) for _ in zoom[1]], box, layout, paint)
         sides, size = (layout.chart[2] * 72, layout.chart[3] * 72), layout.arrow_size
         named = list(zip(marked, names, strict=True))
         led = arrows(seen.whole, named, sides, size, not layout.insets)
@@ -326,11 +317,6 @@ def whole_title(result: RegionMap) -> str:
     return "".join(c if c.isprintable() else " " for c in heading_of(result.slice))
 
 
-def _lines(title: str) -> list[str]:
-    """Of a title over a picture that grows with what it shows."""
-    return textwrap.wrap(title, TITLE_COLUMNS, max_lines=TITLE_LINES, placeholder=" …")
-
-
 def _name_of(result: RegionMap, sliver: Sliver, number: int | None) -> str:
     """A sliver's count, after a letter when there are several."""
     text = count_text(result.regions[sliver.region], result.slice.count)
@@ -349,12 +335,13 @@ def _inset(
     figure: Figure, zoom: Zoom, names: Sequence[str], box: Box, layout: Layout, paint: Paint
 ) -> None:
     """Axes with the inset of one or more slivers."""
-    result = zoom.outline.result
-    number = zoom.slivers[0].region
+    outline, slivers = zoom
+    result = outline.result
+    number = slivers[0].region
     axes = axes_at(figure, box, f"sliver-{number}")
-    paint_map(axes, zoom.outline, f"sliver-{number}-", paint)
-    dress(axes, result.slice, zoom.outline.view.x, zoom.outline.view.y, layout.inset_axes)
-    if any(sliver.cell is not None for sliver in zoom.slivers):
+    paint_map(axes, outline, f"sliver-{number}-", paint)
+    dress(axes, result.slice, outline.view.x, outline.view.y, layout.inset_axes)
+    if any(sliver.cell is not None for sliver in slivers):
         title = f"{', '.join(names)}\nunstable ones differ, zoomed"
     elif len(names) == 1:
         title = _zoomed(names[0], region_area(result, number) if areas_are_known(result) else "")

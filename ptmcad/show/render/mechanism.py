@@ -8,8 +8,7 @@ width and lightness.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 from matplotlib.figure import Figure
@@ -39,20 +38,17 @@ from ptmcad.show.render.sketch import (
 )
 from ptmcad.show.spiral import spiral
 
-
-@dataclass(frozen=True, slots=True)
-class SketchColours:
-    """Colours of two bars (more have the first one), springs, loads, supports and text."""
-
-    bars: tuple[str, str]
-    spring: str
-    load: str
-    base: str
-    text: str
-
-
-STRONG = SketchColours(("#17365d", "#d0751b"), "#1f1f1f", "#a4133c", "#3a3a3a", INK)
-PALE = SketchColours(("#a9bacb", "#f3d9ba"), "#8f8f8f", "#d9a3b2", "#a3a3a3", "#666666")
+SketchColours = Mapping[str, str]
+"""Colours of a first and a second bar (of more all have the first), springs, loads, supports and
+text.
+"""
+STRONG = {
+    "bar-0": "#17365d", "bar-1": "#d0751b", "spring": "#1f1f1f", "load": "#a4133c", "base": "#3a3a3a", "text": INK,
+}  # fmt: skip
+PALE = {
+    "bar-0": "#a9bacb", "bar-1": "#f3d9ba", "spring": "#8f8f8f", "load": "#d9a3b2", "base": "#a3a3a3",
+    "text": "#666666",
+}  # fmt: skip
 
 
 def draw_sketch(axes: Any, seen: Sketch, style: SketchColours, prefix: str) -> None:
@@ -65,21 +61,26 @@ def draw_sketch(axes: Any, seen: Sketch, style: SketchColours, prefix: str) -> N
         kind = number if few else 0
         width = bar_width(seen.mechanism, number)
         _line(
-            axes, (start, end), style.bars[kind], width, f"{prefix}bar-{''.join(names)}", 2 + kind
+            axes,
+            (start, end),
+            style[f"bar-{kind}"],
+            width,
+            f"{prefix}bar-{''.join(names)}",
+            2 + kind,
         )
     for name, points in seen.coils.items():
         _line(axes, points, "white", 2.4, "", 4)
-        _line(axes, points, style.spring, 0.95, f"{prefix}{name}", 5)
+        _line(axes, points, style["spring"], 0.95, f"{prefix}{name}", 5)
     for name, (x, y) in seen.nodes.items():
-        axes.add_artist(_pin(x, y, style.base, f"{prefix}node-{name}"))
+        axes.add_artist(_pin(x, y, style["base"], f"{prefix}node-{name}"))
     for name, start, end in seen.arrows:
-        axes.add_artist(_arrow(start, end, style.load, f"{prefix}load-{name}"))
+        axes.add_artist(_arrow(start, end, style["load"], f"{prefix}load-{name}"))
     for placed in seen.labels:
         if placed.leader is not None:
-            _line(axes, (placed.label.at, placed.leader), style.text, 0.4, "", 8)
+            _line(axes, (placed.at, placed.leader), style["text"], 0.4, "", 8)
         axes.text(
-            *placed.center, placed.label.text, fontsize=LABEL_SIZE, color=style.text, ha="center", va="center",
-            zorder=9, gid=f"{prefix}label-{placed.label.text}",
+            *placed.center, placed.text, fontsize=LABEL_SIZE, color=style["text"], ha="center", va="center",
+            zorder=9, gid=f"{prefix}label-{placed.text}",
         )  # fmt: skip
 
 
@@ -140,16 +141,21 @@ def _supports(axes: Any, seen: Sketch, style: SketchColours, prefix: str) -> Non
     """
     for number, ends in enumerate(seen.rails, 1):
         _line(
-            axes, ends, style.base, 1.8, f"{prefix}base" + (f"-{number}" if number > 1 else ""), 1
+            axes,
+            ends,
+            style["base"],
+            1.8,
+            f"{prefix}base" + (f"-{number}" if number > 1 else ""),
+            1,
         )
         _line(axes, ends, "white", 0.7, "", 1.1)
     for name, kind in seen.mechanism.supports.items():
         x, y = seen.nodes[name]
         fixed = kind is Support.PIN
         for artist in (
-            _support(x, y, style.base)
+            _support(x, y, style["base"])
             if fixed
-            else [_slider(x, y, style.base, kind is Support.SLIDER_Y)]
+            else [_slider(x, y, style["base"], kind is Support.SLIDER_Y)]
         ):
             axes.add_artist(artist)
 
@@ -184,7 +190,9 @@ def _slider(x: float, y: float, colour: str, upright: bool = False) -> Any:
 def bar_mark(number: int, style: SketchColours = STRONG, many: bool = False) -> Mark:
     """A bar in a legend: of two a number, or one of many."""
     width = MANY_BARS if many else BAR_WIDTHS[number]
-    return line_mark({"color": style.bars[number], "linewidth": width, "solid_capstyle": "butt"})
+    return line_mark(
+        {"color": style[f"bar-{number}"], "linewidth": width, "solid_capstyle": "butt"}
+    )
 
 
 def spring_mark() -> Mark:
@@ -194,7 +202,7 @@ def spring_mark() -> Mark:
     for k in range(2 * turns):
         u = ends + (SWATCH - 2 * ends) * (k + 0.5) / (2 * turns)
         points.append((u, AMPLITUDE / 72 * (1 if k % 2 else -1)))
-    look = {"color": STRONG.spring, "linewidth": 0.95, "solid_joinstyle": "round"}
+    look = {"color": STRONG["spring"], "linewidth": 0.95, "solid_joinstyle": "round"}
     return line_mark(look, points=[*points, (SWATCH - ends, 0.0), (SWATCH, 0.0)])
 
 
@@ -208,18 +216,18 @@ def symbol_mark(kind: str) -> Mark:
     def mark(figure: Any, left: float, middle: float) -> None:
         x, y = (left + SWATCH / 2) * 72, middle * 72
         artists = {
-            "support": lambda: [*_support(x, y + 6, STRONG.base), _pin(x, y + 6, STRONG.base)],
+            "support": lambda: [*_support(x, y + 6, STRONG["base"]), _pin(x, y + 6, STRONG["base"])],
             "slider": lambda: [
-                Line2D((x - 9, x + 9), (y, y), color=STRONG.base, linewidth=1.8, zorder=1),
-                _slider(x, y, STRONG.base), _pin(x, y, STRONG.base),
+                Line2D((x - 9, x + 9), (y, y), color=STRONG["base"], linewidth=1.8, zorder=1),
+                _slider(x, y, STRONG["base"]), _pin(x, y, STRONG["base"]),
             ],
-            "load": lambda: [_arrow((x - 9, y), (x + 9, y), STRONG.load)],
+            "load": lambda: [_arrow((x - 9, y), (x + 9, y), STRONG["load"])],
             "spiral": lambda: [
                 Line2D(
                     *zip(*spiral((x, y), (x + 1, y), SPIRAL[0] - 0.4, _SMALL_SPIRAL), strict=True),
-                    color=STRONG.spring, linewidth=0.95, solid_capstyle="round", solid_joinstyle="round",
+                    color=STRONG["spring"], linewidth=0.95, solid_capstyle="round", solid_joinstyle="round",
                 ),
-                _pin(x, y, STRONG.base),
+                _pin(x, y, STRONG["base"]),
             ],
         }[kind]()  # fmt: skip
         for artist in artists:

@@ -15,9 +15,9 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
-from functools import lru_cache
-from itertools import pairwise
+from itertools import groupby, pairwise
 from math import cos, pi
+from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -28,8 +28,11 @@ from ptmcad.answer.regionmap import RegionMap, Stack
 from ptmcad.exact.cad.polyline import critical_shares
 from ptmcad.exact.cad.projection import FibredCurve, by_component, curves_of, lines_of
 from ptmcad.show.render.polylines import simplified_line
-from ptmcad.show.render.view import CellShape, Floats, Interval, Same, Shapes, View, WallShape
+from ptmcad.show.render.view import CellShape, Floats, Interval, View, WallShape, remembered
 from ptmcad.text.flint_numbers import from_fraction, to_fraction
+
+if TYPE_CHECKING:  # a map of the exact engine has no cover
+    from ptmcad.show.render.coveroutline import CoverOutline
 
 TOLERANCE = 1.5e-4
 DEPTH = 7
@@ -41,7 +44,7 @@ of its size.
 
 
 @dataclass(frozen=True, slots=True)
-class StackOutline:
+class _StackOutline:
     """The part of a stack in the view, in the view's coordinates.
 
     Attributes
@@ -71,7 +74,7 @@ class Outline:
     result: RegionMap
     view: View
     swapped: bool
-    stacks: tuple[StackOutline, ...]
+    stacks: tuple[_StackOutline, ...]
     lines: tuple[tuple[float, int, int], ...]
 
     def in_view(self, view: View) -> Outline:
@@ -83,25 +86,30 @@ class Outline:
         pair = (heights, along) if self.swapped else (along, heights)
         return np.stack(pair, axis=-1)
 
-    def line(self, stack: StackOutline, row: int, tolerance: float) -> Floats:
+    def line(self, stack: _StackOutline, row: int, tolerance: float) -> Floats:
         """One of the stack's lines, an edge or a wall, the same for all that it bounds."""
         points = self.points(stack.along, stack.heights[row])
         return simplified_line(points, tolerance) if tolerance else points
 
     def polygons(self, region: int, tolerance: float = 0.0) -> Iterator[Floats]:
-        """The region's parts over each stack, neighbouring cells joined; all with the same
-        orientation.
+        """Closed polygons, shape (k, 2), that bound a region's part of the view: the parts over each
+        stack, neighbouring cells joined; all with the same orientation.
+
+        Parameters
+        ----------
+        tolerance : of the view's side; outlines may depart by as much, to have fewer corners, and
+            still meet where they are the same wall. None is left out, even one that shrinks to a
+            line or a point.
         """
         for stack in self.stacks:
-            levels = [self.region(stack.number, k) == region for k in range(len(stack.heights) - 1)]
-            start = None
-            for level, inside in enumerate([*levels, False]):
-                if inside and start is None:
-                    start = level
-                elif not inside and start is not None:
-                    bottom, top = (self.line(stack, row, tolerance) for row in (start, level))
+            levels = range(len(stack.heights) - 1)
+            own = [self.region(stack.number, k) == region for k in levels]
+            for inside, run in groupby(levels, own.__getitem__):
+                if inside:
+                    first, *rest = run
+                    bottom = self.line(stack, first, tolerance)
+                    top = self.line(stack, first + len(rest) + 1, tolerance)
                     yield np.concatenate([bottom, top[::-1]])
-                    start = None
 
     def cells(self, tolerance: float = 0.0) -> Iterator[CellShape]:
         """Every cell of the view with its outline, stack after stack from below."""
@@ -126,7 +134,7 @@ class Outline:
                 yield from self._line(position, component, by_number[left], by_number[left + 1])
 
     def _line(
-        self, position: float, component: int, left: StackOutline, right: StackOutline
+        self, position: float, component: int, left: _StackOutline, right: _StackOutline
     ) -> Iterator[WallShape]:
         before, after = left.heights[:, -1], right.heights[:, 0]
         for low, high in pairwise(np.unique(np.concatenate([before, after]))):
@@ -168,6 +176,10 @@ class Outline:
         return image.T if self.swapped else image
 
 
+Shapes: TypeAlias = "Outline | CoverOutline"
+"""The shapes of a map in a view."""
+
+
 def shapes(result: RegionMap) -> Shapes:
     """The shapes of a map over its whole window.
 
@@ -191,13 +203,12 @@ def outline(result: RegionMap, view: View | None = None, tolerance: float = TOLE
     tolerance : how far a chord may miss its branch, as a share of the view's size; the vertices are
         on it in any case.
     """
-    return _outline(Same(result), View.whole(result) if view is None else view, tolerance)
+    return _outline(result, View.whole(result) if view is None else view, tolerance)
 
 
 # a map is drawn into several files, in several sizes and into the report
-@lru_cache(maxsize=32)
-def _outline(of: Same[RegionMap], view: View, tolerance: float) -> Outline:
-    result = of.it
+@remembered(32)
+def _outline(result: RegionMap, view: View, tolerance: float) -> Outline:
     base = result.base
     curves = by_component(curves_of(result.components, base))
     axis = result.slice.axes[base]
@@ -207,7 +218,8 @@ def _outline(of: Same[RegionMap], view: View, tolerance: float) -> Outline:
     for number, stack in enumerate(result.stacks):
         ends = _ends(result, stack, roots)
         if ends[0] < high and ends[1] > low:
-            stacks.append(_Tracer(result, view, curves, (number, stack), tolerance).trace(ends))
+            traced = _traced(result, view, curves, stack, ends, tolerance)
+            stacks.append(_StackOutline(number, *traced))
     lines, across = [], lines_of(result.components, base)
     for k, root in enumerate(roots):
         component = _vertical_component(result, k, across)
@@ -237,75 +249,53 @@ def _vertical_component(
     return None
 
 
-class _Tracer:
-    """Traces the walls of one stack within a view."""
+def _traced(
+    result: RegionMap, view: View, curves: dict[int, FibredCurve], stack: Stack, ends: Interval, tolerance: float
+) -> tuple[Floats, Floats]:  # fmt: skip
+    """Positions and heights of a stack's walls from end to end, or to the view's edge."""
+    axis = result.slice.axes[1 - result.base]
+    fibre = (from_fraction(axis.low), from_fraction(axis.high))
+    base, shown = view.along(result.base), view.along(1 - result.base)
+    bits = _BITS if tolerance <= TOLERANCE else _COARSE_BITS
+    width = from_fraction((shown[1] - shown[0]) / 2**bits)
+    components = {wall.component for wall in stack.walls}
 
-    def __init__(
-        self,
-        result: RegionMap,
-        view: View,
-        curves: dict[int, FibredCurve],
-        numbered: tuple[int, Stack],
-        tolerance: float,
-    ) -> None:
-        self.number, self.stack = numbered
-        stack = self.stack
-        self.curves = {n: curves[n] for n in {w.component for w in stack.walls}}
-        axis = result.slice.axes[1 - result.base]
-        self.fibre = (from_fraction(axis.low), from_fraction(axis.high))
-        self.base, self.shown = view.along(result.base), view.along(1 - result.base)
-        self.edges = (self._height(axis.low), self._height(axis.high))
-        self.tolerance = tolerance
-        bits = _BITS if tolerance <= TOLERANCE else _COARSE_BITS
-        self.width = from_fraction((self.shown[1] - self.shown[0]) / 2**bits)
+    def position(at: Fraction) -> float:
+        return float((at - base[0]) / (base[1] - base[0]))
 
-    def trace(self, ends: Interval) -> StackOutline:
-        """The stack's walls from end to end, or to the view's edge."""
-        low, high = max(ends[0], self.base[0]), min(ends[1], self.base[1])
-        inner = (high - low) * _LIMIT
-        columns = {0.0: self._column(low + inner, low), 1.0: self._column(high - inner, high)}
-        wide = self._position(high) - self._position(low) > 0.01
-        steps = (0.0, 0.25, 0.5, 0.75, 1.0) if wide else (0.0, 0.5, 1.0)
-        pending = list(pairwise(steps)) if self.stack.walls else []
-        for s in steps[1:-1] if pending else ():
-            columns[s] = self._column(_between(low, high, s))
-        depth = DEPTH
-        while pending and depth:
-            depth -= 1
-            following = []
-            for s, t in pending:
-                middle = (s + t) / 2
-                columns[middle] = self._column(_between(low, high, middle))
-                if _deviation(columns[s], columns[middle], columns[t]) > self.tolerance:
-                    following += [(s, middle), (middle, t)]
-            pending = following
-        ordered = np.array([columns[s] for s in sorted(columns)])
-        heights = np.maximum.accumulate(ordered[:, 1:].T, axis=0)
-        return StackOutline(self.number, ordered[:, 0], heights)
+    def height(at: Fraction) -> float:
+        scaled = (at - shown[0]) / (shown[1] - shown[0])
+        return float(min(max(scaled, Fraction(-1)), Fraction(2)))
 
-    def _column(self, at: Fraction, drawn_at: Fraction | None = None) -> tuple[float, ...]:
+    def column(at: Fraction, drawn_at: Fraction | None = None) -> tuple[float, ...]:
         """Position on the base axis, then the heights of the lower edge, the walls and the upper
         edge.
         """
         u = from_fraction(at)
-        roots: dict[int, list[float]] = {}
-        for n, c in self.curves.items():
-            found = c.roots_over(u, self.fibre)
-            roots[n] = [self._height(to_fraction(refine(r, self.width).middle)) for r in found]
-        heights = [roots[w.component][w.root] for w in self.stack.walls]
-        return (
-            self._position(at if drawn_at is None else drawn_at),
-            self.edges[0],
-            *heights,
-            self.edges[1],
-        )
+        roots = {n: curves[n].roots_over(u, fibre) for n in components}
+        walls = (refine(roots[w.component][w.root], width).middle for w in stack.walls)
+        heights = (height(to_fraction(middle)) for middle in walls)
+        return (position(at if drawn_at is None else drawn_at), edges[0], *heights, edges[1])
 
-    def _position(self, at: Fraction) -> float:
-        return float((at - self.base[0]) / (self.base[1] - self.base[0]))
-
-    def _height(self, at: Fraction) -> float:
-        scaled = (at - self.shown[0]) / (self.shown[1] - self.shown[0])
-        return float(min(max(scaled, Fraction(-1)), Fraction(2)))
+    edges = height(axis.low), height(axis.high)
+    low, high = max(ends[0], base[0]), min(ends[1], base[1])
+    inner = (high - low) * _LIMIT
+    columns = {0.0: column(low + inner, low), 1.0: column(high - inner, high)}
+    wide = position(high) - position(low) > 0.01
+    steps = (0.0, 0.25, 0.5, 0.75, 1.0) if wide else (0.0, 0.5, 1.0)
+    for s in steps[1:-1] if stack.walls else ():
+        columns[s] = column(_between(low, high, s))
+    pending = list(pairwise(steps)) if stack.walls else []
+    for _ in range(DEPTH):
+        following = []
+        for s, t in pending:
+            middle = (s + t) / 2
+            columns[middle] = column(_between(low, high, middle))
+            if _deviation(columns[s], columns[middle], columns[t]) > tolerance:
+                following += [(s, middle), (middle, t)]
+        pending = following
+    ordered = np.array([columns[s] for s in sorted(columns)])
+    return ordered[:, 0], np.maximum.accumulate(ordered[:, 1:].T, axis=0)
 
 
 def _between(low: Fraction, high: Fraction, s: float) -> Fraction:

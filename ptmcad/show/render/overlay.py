@@ -7,7 +7,6 @@ kinds of marks differ in shape or lightness, not in hue alone.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from enum import Enum
 from typing import Any
 
@@ -32,15 +31,8 @@ _SHAPES: dict[Agreement, dict[str, Any]] = {
 }
 
 
-@dataclass(frozen=True, slots=True)
-class Measured:
-    """A point in the axes' order, with a label that may be empty."""
-
-    at: Point
-    label: str = ""
-    agreement: Agreement = Agreement.UNTOLD
-
-
+Measured = tuple[Point, str, Agreement]
+"""A point in the axes' order, with a label that may be empty."""
 Overlay = Sequence[Measured]
 
 
@@ -48,7 +40,7 @@ def overlay_entries(overlay: Overlay) -> tuple[Entry, ...]:
     """What the marks mean, with their numbers."""
     found = []
     for kind in Agreement:
-        number = sum(point.agreement is kind for point in overlay)
+        number = sum(agreement is kind for _, _, agreement in overlay)
         if number:
             found.append(
                 Entry((kind.value, several(number, "point")), point_mark(**_style(kind, 1.0)))
@@ -71,26 +63,22 @@ def draw_overlay(axes: Any, view: View, overlay: Overlay, scale: float, size: fl
     scale : of marks, against a picture in 9 points.
     size : of the labels' text, in points.
     """
-    from matplotlib.lines import Line2D
-
     for kind in Agreement:
-        at = [view.approximate_position(point.at) for point in overlay if point.agreement is kind]
+        at = [view.approximate_position(point) for point, _, own in overlay if own is kind]
         if at:
             x, y = zip(*at, strict=True)
-            axes.add_artist(
-                Line2D(
-                    x, y, transform=axes.transAxes, zorder=6.5, clip_on=False, gid=f"measured-{kind.name.lower()}",
-                    **_style(kind, scale),
-                )
+            axes.plot(
+                x, y, transform=axes.transAxes, zorder=6.5, clip_on=False, gid=f"measured-{kind.name.lower()}",
+                **_style(kind, scale),
             )  # fmt: skip
-    for point in overlay:
-        if not point.label:
+    for point, label, _ in overlay:
+        if not label:
             continue
-        place = view.approximate_position(point.at)
+        place = view.approximate_position(point)
         right, high = place[0] < 0.8, place[1] > 0.9
         away = ((4 if right else -4) * scale, (-4 if high else 4) * scale)
         axes.annotate(
-            point.label, xy=place, xycoords="axes fraction", xytext=away, textcoords="offset points",
+            label, xy=place, xycoords="axes fraction", xytext=away, textcoords="offset points",
             ha="left" if right else "right", va="top" if high else "bottom", fontsize=size, color=INK,
             zorder=6.4, annotation_clip=False,
             bbox={"boxstyle": "round,pad=0.1", "facecolor": "white", "edgecolor": "none"},

@@ -7,7 +7,8 @@ from typing import Any
 import numpy as np
 
 from ptmcad.show.render.colours import CORE, INK, RIM, RIM_INK, Paint
-from ptmcad.show.render.view import Floats, Shapes
+from ptmcad.show.render.outline import Shapes
+from ptmcad.show.render.view import Floats
 
 _OVER = 0.004
 """Of the view's sides: more than half a rim's width."""

@@ -119,12 +119,8 @@ def draw_branches(slice: Slice, found: Branches) -> Figure:
     with settings():
         figure, panels = panelled(slice, found, names, entries, words)
         for number, axes in enumerate(panels):
-            for branch in sorted(
-                found.branches, key=lambda b: bool(b.stable)
-            ):  # the stable ones on top
-                look = _look(kind(branch, found.model))
-                for xs, ys in _strokes(branch, number, found):
-                    axes.plot(xs, ys, **look)
+            # the stable ones on top
+            _draw(axes, number, found, sorted(found.branches, key=lambda b: bool(b.stable)))
     return figure
 
 
@@ -143,12 +139,15 @@ def draw_paths_and_branches(slice: Slice, paths: PosePaths, found: Branches) -> 
     ]
     figure = draw_paths(slice, paths, further)
     for number in range(len(found.quantities)):
-        for branch in others:
-            for xs, ys in _strokes(branch, number, found):
-                figure.axes[number].plot(
-                    xs, ys, zorder=1.5, **(_look(kind(branch, found.model)) | _BEHIND)
-                )
+        _draw(figure.axes[number], number, found, others, zorder=1.5, **_BEHIND)
     return figure
+
+
+def _draw(axes: Any, number: int, found: Branches, branches: Sequence[Branch], **look: Any) -> None:
+    """A quantity along branches, in the looks of their kinds but for one of its own."""
+    for branch in branches:
+        for xs, ys in _strokes(branch, number, found):
+            axes.plot(xs, ys, **(_look(kind(branch, found.model)) | look))
 
 
 def _is_left(branch: Branch, paths: PosePaths, found: Branches) -> bool:

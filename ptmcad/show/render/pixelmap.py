@@ -25,12 +25,12 @@ from ptmcad.show.render.fieldlines import pixel_edges
 from ptmcad.show.render.fieldpicture import COLOURS, bar_text, description, fill_empty, show_pixels
 from ptmcad.show.render.printing import printed, settings
 
-SIZE = 5.2, 4.2
-"""Inches."""
+SIZE, DPI = (5.2, 4.2), 100
+"""Inches, and the resolution of a PNG."""
 _LINE = 0.8
 
 
-def grid_png(grid: Grid, dpi: int) -> bytes:
+def grid_png(grid: Grid, dpi: int = DPI) -> bytes:
     """The numbers of stable equilibria, or of all where stability is not known, as the content of a
     PNG.
     """
@@ -61,7 +61,7 @@ def grid_png(grid: Grid, dpi: int) -> bytes:
         return printed(figure, "png", dpi, repr(grid), "")
 
 
-def field_png(field: Field, dpi: int) -> bytes:
+def field_png(field: Field, dpi: int = DPI) -> bytes:
     """The values as the content of a PNG."""
     with settings():
         figure, axes = _chart(field, dpi)

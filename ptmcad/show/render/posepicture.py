@@ -14,7 +14,6 @@ from __future__ import annotations
 import textwrap
 from collections.abc import Iterator, Mapping, Sequence
 from fractions import Fraction
-from typing import Any
 
 from matplotlib.figure import Figure
 
@@ -27,7 +26,7 @@ from ptmcad.model.work import PointForce, loads_at
 from ptmcad.show.drawable import no_drawing
 from ptmcad.show.render.axes import symbol, with_symbols
 from ptmcad.show.render.colours import INK
-from ptmcad.show.render.inches import axes_at, stroke, write, write_lines
+from ptmcad.show.render.inches import TITLE_LINE, axes_at, stroke, titled, write, write_lines
 from ptmcad.show.render.labels import Position
 from ptmcad.show.render.legend import Entry, Type, draw_legend
 from ptmcad.show.render.mechanism import (
@@ -51,21 +50,18 @@ from ptmcad.show.render.sketch import (
     MAX_ARROW,
     MIN_ARROW,
     PanelFrame,
-    Scene,
+    Sketch,
     arrow_lengths,
     components,
     frame_of,
 )
-from ptmcad.show.style import Size
 from ptmcad.show.units import energy_unit
 from ptmcad.text.enclosure import Enclosure
 from ptmcad.text.numerals import magnitude
 from ptmcad.text.tree import to_text
 
-MARGIN, GAP, HEAD, BELOW, KEY, TITLE_LINE = 0.2, 0.14, 0.26, 0.36, 2.75, 0.22
-"""In inches: the rim, space between panels, a panel's lines above and below, the legend, a line of
-the title.
-"""
+MARGIN, GAP, HEAD, BELOW, KEY = 0.2, 0.14, 0.26, 0.36, 2.75
+"""In inches: the rim, space between panels, a panel's lines above and below, the legend."""
 
 
 def draw_poses(poses: Poses) -> Figure:
@@ -101,14 +97,13 @@ def draw_poses(poses: Poses) -> Figure:
     width = 2 * MARGIN + columns * (wide + GAP) + KEY
     title = heading(poses, round(12.4 * (width - 2 * MARGIN)))
     top = below + MARGIN
-    scene = Scene(mechanism, frame, arrows)
     with settings():
-        figure = titled(title, (width, top + TITLE_LINE * len(title) + 0.08 + MARGIN), MARGIN)
-        figure.set_label(f"{' '.join(title)}\n{describe(poses)}")
+        size = (width, top + TITLE_LINE * len(title) + 0.08 + MARGIN)
+        figure: Figure = titled(title, describe(poses), size, MARGIN, MARGIN)
         for number, pose in enumerate(shown):
             down, across = divmod(number, columns)
             corner = (MARGIN + across * (wide + GAP), top - down * (row + GAP) - HEAD - tall)
-            panel(figure, scene, pose, number + 1, corner)
+            panel(figure, frame.sketch(mechanism, pose, arrows), pose, number + 1, corner)
         left = MARGIN + columns * (wide + GAP) + 0.1
         draw_legend(figure, entries, left, top)
         scale_bar(figure, frame, (left, top - Type().height(entries) - 0.12), poses.units)
@@ -130,37 +125,29 @@ def below_panel(pose: Pose, model: Model) -> float:
     return BELOW + 0.16 * (len(_lines_below(model, pose)) - 2)
 
 
-def panel(figure: Figure, scene: Scene, pose: Pose, number: int, corner: Position) -> Any:
+def panel(figure: Figure, seen: Sketch, pose: Pose, number: int, corner: Position) -> None:
     """One pose in axes at a place in inches, with its kind above and energy and angles below."""
-    mechanism, frame = scene.mechanism, scene.frame
-    strong = mechanism.criterion.works(pose.stable)
-    style = STRONG if strong else PALE
-    axes = pose_axes(figure, corner, frame, f"pose-{number}", strong)
-    draw_sketch(axes, scene.of(pose), style, f"pose-{number}-")
+    strong = seen.mechanism.criterion.works(pose.stable)
+    draw_pose(figure, seen, corner, f"pose-{number}", strong)
     colour, weight = (INK, "bold") if strong else ("#555555", "normal")
     flat = ", flat" if pose.flat else ""
-    above = (corner[0], corner[1] + frame.height / 72 + 0.12)
+    above = (corner[0], corner[1] + seen.sides[1] / 72 + 0.12)
     write(figure, above, f"{number}  {kind(pose)}{flat}", 9, fontweight=weight, color=colour)
-    write_lines(
-        figure, (corner[0], corner[1] - 0.11), _lines_below(mechanism, pose), 8, 0.16, color=colour
-    )
-    return axes
+    lines = _lines_below(seen.mechanism, pose)
+    write_lines(figure, (corner[0], corner[1] - 0.11), lines, 8, 0.16, color=colour)
 
 
-def pose_axes(figure: Figure, corner: Position, frame: PanelFrame, gid: str, strong: bool) -> Any:
-    """Axes in which a unit is a point, in a dark frame or a pale one."""
-    axes = axes_at(figure, (*corner, frame.width / 72, frame.height / 72), gid)
-    axes.set(xlim=(0, frame.width), ylim=(0, frame.height), xticks=[], yticks=[])
+def draw_pose(
+    figure: Figure, seen: Sketch, corner: Position, gid: str, strong: bool, framed: bool = True
+) -> None:
+    """A sketch in axes of which a unit is a point, in strong colours or pale ones, and so its frame."""
+    wide, tall = seen.sides
+    axes = axes_at(figure, (*corner, wide / 72, tall / 72), gid)
+    axes.set(xlim=(0, wide), ylim=(0, tall), xticks=[], yticks=[])
     for spine in axes.spines.values():
-        spine.set(color=INK if strong else "#b5b5b5", linewidth=1.0 if strong else 0.6)
-    return axes
-
-
-def titled(lines: Sequence[str], size: Size, left: float) -> Figure:
-    """A page of a size in inches with a title at the top."""
-    figure = Figure(figsize=size, facecolor="white")
-    write_lines(figure, (left, size[1] - MARGIN - TITLE_LINE / 2), lines, 11, TITLE_LINE)
-    return figure
+        dark = strong and framed
+        spine.set(color=INK if dark else "#b5b5b5", linewidth=1.0 if dark else 0.6)
+    draw_sketch(axes, seen, STRONG if strong else PALE, f"{gid}-")
 
 
 def empty(poses: Poses) -> Figure:
@@ -171,7 +158,8 @@ def empty(poses: Poses) -> Figure:
         *textwrap.wrap(poses.remark or "No equilibrium is known here.", 80),
     ]
     with settings():
-        figure = titled(lines, (7.0, 2 * MARGIN + TITLE_LINE * len(lines)), MARGIN)
+        size = (7.0, 2 * MARGIN + TITLE_LINE * len(lines))
+        figure: Figure = titled(lines, "", size, MARGIN, MARGIN)
         figure.set_label(f"{lines[0]}\n{describe(poses)}")
     return figure
 

@@ -33,7 +33,7 @@ from ptmcad.show.ranges.linetable import (
     working_text,
 )
 from ptmcad.show.render.axes import heading_of, scale_of, symbol
-from ptmcad.show.render.colours import INK, UNKNOWN, Fill, fill_of_counts, fill_of_index
+from ptmcad.show.render.colours import INK, UNKNOWN, fill_of_counts, fill_of_index
 from ptmcad.show.render.inches import write, write_lines
 from ptmcad.show.render.legend import Entry, Type, draw_legend
 from ptmcad.show.render.printing import settings
@@ -43,14 +43,15 @@ from ptmcad.show.render.rangeplate import (
     SIZE,
     WIDE,
     axes_in,
-    axis_name,
     beside,
     figure_of,
     heading,
     middle_of,
     scaled,
+    scaled_axis,
+    unit_along,
 )
-from ptmcad.show.units import unit, with_unit
+from ptmcad.show.units import with_unit
 
 BAR, LABELS, ROOM = 0.62, 0.42, 0.36
 MAX_BAR, SHARE_OF_ROW = 6.0, 0.6
@@ -70,10 +71,9 @@ def draw_range(slice: Slice, found: CountIntervals) -> Figure:
     with settings():
         figure = beside(heading(slice, found.at), Type().width(legend), tall, _words(found))
         axes = axes_in(figure, (LEFT, below, WIDE, BAR))
-        scale = scale_of(found.along.low, found.along.high)
         for i in found.intervals:
             low, high = (float(found.along.share(x)) for x in (upper(i.low), lower(i.high)))
-            fill = _fill(i.counts)
+            fill = UNKNOWN if i.counts is None else fill_of_counts(i.counts)
             axes.add_patch(Rectangle((low, 0), high - low, 1, facecolor=fill.face, hatch=fill.hatch or None,
                                      edgecolor=INK, linewidth=0.6))  # fmt: skip
             if (high - low) * WIDE * 72 > 4 * SIZE:
@@ -90,10 +90,10 @@ def draw_range(slice: Slice, found: CountIntervals) -> Figure:
             figure, axes, [_place(c.at, found.along) for c in found.changes], texts, below, upright
         )
         ruler = axes_in(figure, (LEFT, ROOM + 0.2, WIDE, 0.01))
-        ruler.set(xlim=(scale.low, scale.high), yticks=[])
+        ruler.set(yticks=[])
         ruler.spines[["left", "right", "top"]].set_visible(False)
         ruler.tick_params(labelsize=SIZE + 1)
-        ruler.set_xlabel(axis_name(slice, found.along), fontsize=SIZE + 2, labelpad=1)
+        scaled_axis(ruler.xaxis, found.along, unit_along(slice, found.along), 1)
         draw_legend(figure, legend, LEFT + WIDE + RIGHT, tall - 0.05)
     return figure
 
@@ -197,12 +197,9 @@ def draw_widths(slice: Slice, found: OperationWidths) -> Figure:
         upper = axes_in(figure, (LEFT, foot + 2.25, WIDE, 2.3))
         lower = axes_in(figure, (LEFT, foot, WIDE, 1.9))
         over, along = found.over, found.along
-        scale, fibre = scale_of(over.low, over.high), scale_of(along.low, along.high)
-        points = []
-        for row in found.rows:
-            points += [(scaled(row.value, over), float(i.width)) for i in row.operation]
         _draw_bars(upper, found)
-        lower.plot([p[0] for p in points], [p[1] for p in points], "o", color=INK, markersize=2.5)
+        points = [(scaled(r.value, over), float(i.width)) for r in found.rows for i in r.operation]
+        lower.plot([x for x, _ in points], [w for _, w in points], "o", color=INK, markersize=2.5)
         for m in maxima:
             ends = [scaled(v, over) for v in (m.at.low, m.at.high)]
             lower.plot(ends, [float(m.width)] * 2, "-", color=_WIDEST, clip_on=False)
@@ -212,19 +209,17 @@ def draw_widths(slice: Slice, found: OperationWidths) -> Figure:
                 # a maximum at the window's edge would be cut in half
                 lower.plot([scaled(Fraction(at), over)], [float(m.width)], "D", color=_WIDEST, markerfacecolor=face,
                            markersize=6, clip_on=False, zorder=3)  # fmt: skip
-        upper.set_ylim(fibre.low, fibre.high)
-        upper.set_ylabel(axis_name(slice, along), fontsize=SIZE + 2)
-        known = unit(slice, slice.axis_names.index(along.name))
+        known = unit_along(slice, along)
+        scaled_axis(upper.yaxis, along, known)
         lower.set_ylabel(
             f"width of the\n{with_unit(found.model.nouns.range, known)}", fontsize=SIZE + 1
         )
         lower.set_ylim(bottom=0)
         lower.margins(y=0.12)
         for axes in (upper, lower):
-            axes.set_xlim(scale.low, scale.high)
+            scaled_axis(axes.xaxis, over, unit_along(slice, over) if axes is lower else None, 2)
             axes.tick_params(labelsize=SIZE)
         upper.tick_params(labelbottom=False)
-        lower.set_xlabel(axis_name(slice, over), fontsize=SIZE + 2, labelpad=2)
         write_lines(figure, (LEFT, foot - 0.55), texts, SIZE, 0.2)
     return figure
 
@@ -268,10 +263,6 @@ def _where(found: OperationWidths) -> str:
 def _place(end: AnyEnd, along: Axis) -> float:
     """Where an end lies in the window, from 0 to 1."""
     return float(along.share(middle_of(end)))
-
-
-def _fill(counts: Counts | None) -> Fill:
-    return UNKNOWN if counts is None else fill_of_counts(counts)
 
 
 def _number(counts: Counts | None) -> str:

@@ -15,15 +15,15 @@ from ptmcad.answer.intervals import End
 from ptmcad.answer.paths import PosePaths
 from ptmcad.question.slice import Axis, Slice
 from ptmcad.show.render.axes import heading_of, scale_of, symbol
-from ptmcad.show.render.inches import Box, axes_at, wrapped, write_lines
+from ptmcad.show.render.inches import TITLE_LINE, Box, axes_at, titled, wrapped
 from ptmcad.show.render.legend import Entry, Type, draw_legend
 from ptmcad.show.style import Size
 from ptmcad.show.units import unit, with_unit
 from ptmcad.text.enclosure import Enclosure
 from ptmcad.text.numerals import Numbers, shortest_text
 
-WIDE, LEFT, RIGHT, LINE, MARGIN = 6.2, 0.85, 0.3, 0.22, 0.15
-"""In inches: the axes, the space at their sides, a line of the title, the rim."""
+WIDE, LEFT, RIGHT, MARGIN = 6.2, 0.85, 0.3, 0.15
+"""In inches: the axes, the space at their sides, the rim."""
 PANEL, GAP, FOOT = 2.0, 0.25, 0.55
 """Of a panel of several, the space between two, and that below the last."""
 SIZE = 8.0
@@ -51,10 +51,8 @@ def beside(heading: str, key: float, tall: float, words: str) -> Figure:
 
 def figure_of(title: Sequence[str], size: Size, words: str) -> Figure:
     """A figure under a title of these lines, its size in inches that of what is below it."""
-    tall = size[1] + LINE * len(title) + 2 * MARGIN
-    figure = Figure(figsize=(size[0], tall), facecolor="white")
-    figure.set_label(f"{' '.join(title)}\n{words}")
-    write_lines(figure, (LEFT, tall - MARGIN - LINE / 2), title, TITLE, LINE)
+    tall = size[1] + TITLE_LINE * len(title) + 2 * MARGIN
+    figure: Figure = titled(title, words, (size[0], tall), LEFT, MARGIN)
     return figure
 
 
@@ -76,16 +74,15 @@ def panelled(
     last = len(names) - 1
     tall = max((last + 1) * PANEL + last * GAP + FOOT, Type().height(entries) + 0.2)
     figure = beside(heading(slice, found.at), Type().width(entries), tall, words)
-    scale = scale_of(found.along.low, found.along.high)
     panels = []
     for number, name in enumerate(names):
         axes = axes_in(figure, (LEFT, tall - (number + 1) * PANEL - number * GAP, WIDE, PANEL))
-        axes.set_xlim(scale.low, scale.high)
         axes.margins(y=0.08)
         axes.tick_params(labelsize=SIZE, labelbottom=number == last)
         axes.set_ylabel(name, fontsize=SIZE + 2)
+        known = unit_along(slice, found.along) if number == last else None
+        scaled_axis(axes.xaxis, found.along, known, 2)
         panels.append(axes)
-    axes.set_xlabel(axis_name(slice, found.along), fontsize=SIZE + 2, labelpad=2)
     draw_legend(figure, entries, LEFT + WIDE + RIGHT, tall - 0.05)
     return figure, panels
 
@@ -106,10 +103,18 @@ def middle_of(end: End | Enclosure) -> Fraction:
     return end if isinstance(end, Fraction) else (end.low + end.high) / 2
 
 
-def axis_name(slice: Slice, axis: Axis) -> str:
-    """The name beside an axis, with its scale and unit."""
-    name = scale_of(axis.low, axis.high).name(symbol(axis.name))
-    return with_unit(name, unit(slice, slice.axis_names.index(axis.name)))
+def scaled_axis(shown: Any, axis: Axis, unit: str | None, pad: float = 4) -> None:
+    """Limits of one of matplotlib's axes and, unless the unit is None, its name with scale and unit."""
+    scale = scale_of(axis.low, axis.high)
+    shown.axes.set(**{f"{shown.axis_name}lim": (scale.low, scale.high)})
+    if unit is not None:
+        shown.set_label_text(with_unit(scale.name(symbol(axis.name)), unit), fontsize=SIZE + 2)
+        shown.labelpad = pad
+
+
+def unit_along(slice: Slice, axis: Axis) -> str:
+    """The unit of one of a slice's axes."""
+    return unit(slice, slice.axis_names.index(axis.name))
 
 
 def short(value: Fraction) -> str:

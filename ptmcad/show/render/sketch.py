@@ -10,7 +10,7 @@ Labels keep clear of all that is drawn (`ptmcad.show.render.labels`).
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from math import copysign, dist, hypot
@@ -24,7 +24,6 @@ from ptmcad.show.render.axes import symbol
 from ptmcad.show.render.labels import (
     Box,
     Label,
-    Placed,
     Position,
     Stroke,
     distance,
@@ -57,6 +56,10 @@ _SAME = 2.5
 LABEL_HALF_HEIGHT, LABEL_SIZE = 5.6, 9.0
 
 
+Nodes = Mapping[str, Position]
+"""The points' places on paper."""
+
+
 @dataclass(frozen=True, slots=True)
 class PanelFrame:
     """What all panels have in common: points to the unit of length, and their sides in points."""
@@ -65,21 +68,19 @@ class PanelFrame:
     height: float
     width: float = WIDTH
 
-    def nodes(self, pose: Pose) -> dict[str, Position]:
-        """The places of a pose's nodes, the pose in the middle of its panel."""
+    def sketch(self, mechanism: Mechanism, pose: Pose, arrows: Mapping[str, float]) -> Sketch:
+        """A pose in the middle of its panel; ``arrows`` are lengths of loads."""
         exact = _centers(pose)
         (left, right), (bottom, top) = _sides(exact.values())
-        return {
+        nodes = {
             name: (
                 self.width / 2 + float((x - (left + right) / 2) * self.scale),
                 self.height / 2 + float((y - (bottom + top) / 2) * self.scale),
             )
             for name, (x, y) in exact.items()
         }
+        return sketched(mechanism, nodes, (self.width, self.height), arrows)
 
-
-Nodes = Mapping[str, Position]
-"""The points' places on paper."""
 
 Arrow = tuple[str, Position, Position]
 """A load's component at a node: its name, such as F3x, its start and its end."""
@@ -91,6 +92,7 @@ class Sketch:
 
     Attributes
     ----------
+    sides : of the paper, in points.
     rails : what sliders slide on: a telescopic base from a fixed support at their height, else a
         short one.
     bars : in the order of the mechanism's.
@@ -99,12 +101,13 @@ class Sketch:
     """
 
     mechanism: Mechanism
+    sides: Position
     nodes: Nodes
     rails: tuple[tuple[Position, Position], ...]
     bars: tuple[tuple[Position, Position], ...]
     coils: Mapping[str, tuple[Position, ...]]
     arrows: tuple[Arrow, ...]
-    labels: tuple[Placed, ...]
+    labels: tuple[Label, ...]
 
 
 def frame_of(
@@ -165,33 +168,20 @@ def bar_width(mechanism: Mechanism, number: int) -> float:
     return BAR_WIDTHS[number] if len(mechanism.bars) <= len(BAR_WIDTHS) else MANY_BARS
 
 
-@dataclass(frozen=True, slots=True)
-class Scene:
-    """What the sketches of several poses have in common; ``arrows`` are lengths of loads."""
-
-    mechanism: Mechanism
-    frame: PanelFrame
-    arrows: Mapping[str, float]
-
-    def of(self, pose: Pose) -> Sketch:
-        """One of them."""
-        sides = (self.frame.width, self.frame.height)
-        return sketched(self.mechanism, self.frame.nodes(pose), sides, self.arrows)
-
-
 def sketched(
     mechanism: Mechanism, nodes: Nodes, sides: Position, arrows: Mapping[str, float],
-    turns: int | None = None, labels: Callable[[Nodes], Iterable[Label]] | None = None,
+    turns: int | None = None, offsets: Nodes | None = None,
 ) -> Sketch:  # fmt: skip
     """A mechanism whose nodes are at places on paper of these sides, with arrows of these lengths.
 
     Parameters
     ----------
     turns : of every spring; as many as its length asks for, where it is None.
-    labels : of the nodes; if not given one for each, or for those that coincide.
+    offsets : where the label of each node had best lie, by its text; if not given nodes that
+        coincide have one label, away from the middle.
     """
     bars = tuple((nodes[a], nodes[b]) for a, b in mechanism.bars)
-    drawn = [Stroke(a, b, bar_width(mechanism, number) / 2) for number, (a, b) in enumerate(bars)]
+    drawn = [(a, b, bar_width(mechanism, number) / 2) for number, (a, b) in enumerate(bars)]
     coils = {}
     for number, (start, end) in enumerate(mechanism.spring_ends, 1):
         coils[f"spring-{number}"] = line = _spring(nodes[start], nodes[end], drawn, turns)
@@ -201,15 +191,15 @@ def sketched(
         drawn += polyline(line, 0.5)
     placed_arrows = tuple(_arrows(mechanism.loads, nodes, arrows))
     rails = tuple(_rails(mechanism, nodes))
-    strokes = [*drawn, *(Stroke(a, b, 1.0) for a, b in rails)]
-    strokes += [Stroke(start, end, 3.0) for _, start, end in placed_arrows]
+    strokes = [*drawn, *((a, b, 1.0) for a, b in rails)]
+    strokes += [(start, end, 3.0) for _, start, end in placed_arrows]
     placed = place(
-        (labels or _labels)(nodes),
+        _labels(nodes, offsets),
         strokes,
         _symbols(mechanism, nodes),
         (2.0, 2.0, sides[0] - 2.0, sides[1] - 2.0),
     )
-    return Sketch(mechanism, nodes, rails, bars, coils, placed_arrows, tuple(placed))
+    return Sketch(mechanism, sides, nodes, rails, bars, coils, placed_arrows, tuple(placed))
 
 
 def _rails(mechanism: Mechanism, nodes: Nodes) -> Iterator[tuple[Position, Position]]:
@@ -247,43 +237,24 @@ def _spring(
     """The zigzag between two nodes, aside when something is already drawn there or they are too
     near.
     """
-    length = dist(start, end)
-    along = (
-        ((end[0] - start[0]) / length, (end[1] - start[1]) / length)
-        if length > 1e-6
-        else (1.0, 0.0)
-    )
-    if along[0] < -1e-9 or (
-        abs(along[0]) <= 1e-9 and along[1] < 0
-    ):  # aside means above first, not below
-        return _spring(end, start, drawn, turns)[::-1]
-    straight = _zigzag(start, end, along, 0.0, turns)
-    if length >= _MIN_LENGTH + 2 * _END and not _covered(straight, drawn):
-        return straight
-    tried = [_zigzag(start, end, along, aside, turns) for aside in _ASIDE]
-    return next((line for line in tried if not _covered(line, drawn)), tried[-1])
-
-
-def _zigzag(
-    start: Position, end: Position, along: Position, aside: float, turns: int | None
-) -> tuple[Position, ...]:
-    length = dist(start, end)
-    wound = max(_MIN_LENGTH, length - 2 * _END)
-    across = (-along[1], along[0])
-    middle = (
-        (start[0] + end[0]) / 2 + across[0] * aside,
-        (start[1] + end[1]) / 2 + across[1] * aside,
-    )
+    span = complex(end[0] - start[0], end[1] - start[1])
+    along = span / abs(span) if abs(span) > 1e-6 else complex(1)
+    if along.real < -1e-9 or (abs(along.real) <= 1e-9 and along.imag < 0):
+        return _spring(end, start, drawn, turns)[::-1]  # aside means above first, not below
+    wound = max(_MIN_LENGTH, abs(span) - 2 * _END)
     teeth = 2 * (max(MIN_TURNS, round(wound / TURN)) if turns is None else turns)
-    offsets = [(-wound / 2, 0.0)]
-    for k in range(teeth):
-        offsets.append((wound * ((k + 0.5) / teeth - 0.5), AMPLITUDE if k % 2 else -AMPLITUDE))
-    offsets.append((wound / 2, 0.0))
-    inner = tuple(
-        (middle[0] + along[0] * u + across[0] * v, middle[1] + along[1] * u + across[1] * v)
-        for u, v in offsets
-    )
-    return (start, *inner, end)
+    tips = [
+        complex(wound * ((k + 0.5) / teeth - 0.5), AMPLITUDE if k % 2 else -AMPLITUDE)
+        for k in range(teeth)
+    ]
+    tried = (0.0, *_ASIDE) if abs(span) >= _MIN_LENGTH + 2 * _END else _ASIDE
+    for aside in tried:
+        middle = complex(*start) + span / 2 + 1j * along * aside
+        points = [middle + along * tip for tip in (-wound / 2, *tips, wound / 2)]
+        line = (start, *((point.real, point.imag) for point in points), end)
+        if not _covered(line, drawn):
+            break
+    return line
 
 
 def _covered(line: Sequence[Position], drawn: Sequence[Stroke]) -> bool:
@@ -295,7 +266,7 @@ def _covered(line: Sequence[Position], drawn: Sequence[Stroke]) -> bool:
         (first[0] + (last[0] - first[0]) * k / 20, first[1] + (last[1] - first[1]) * k / 20)
         for k in range(21)
     ]
-    return sum(any(distance(p, s) < AMPLITUDE + s.half for s in drawn) for p in points) > 7
+    return sum(any(distance(p, s) < AMPLITUDE + s[2] for s in drawn) for p in points) > 7
 
 
 def _arrows(loads: Sequence[Load], nodes: Nodes, lengths: Mapping[str, float]) -> Iterator[Arrow]:
@@ -314,20 +285,11 @@ def _arrows(loads: Sequence[Load], nodes: Nodes, lengths: Mapping[str, float]) -
                 yield name, start, end
 
 
-def own_labels(nodes: Nodes, offsets: Nodes) -> Iterator[Label]:
-    """A label for each node, to lie where these offsets point."""
-    for name, at in nodes.items():
-        text = symbol(name)
-        yield Label(
-            text, at, (max(6.9, 3.45 * len(text)), LABEL_HALF_HEIGHT), offsets.get(text, (0.0, 1.0))
-        )
-
-
-def _labels(nodes: Nodes) -> Iterator[Label]:
+def _labels(nodes: Nodes, offsets: Nodes | None) -> Iterator[Label]:
     """One label for each node, or for the nodes that coincide on paper."""
     groups: list[list[str]] = []
     for name, at in nodes.items():
-        near = [g for g in groups if dist(at, nodes[g[0]]) < _SAME]
+        near = [g for g in groups if offsets is None and dist(at, nodes[g[0]]) < _SAME]
         if near:
             near[0].append(name)
         else:
@@ -337,6 +299,7 @@ def _labels(nodes: Nodes) -> Iterator[Label]:
         at = nodes[group[0]]
         text = ", ".join(symbol(name) for name in group)
         away = (at[0] - middle[0], at[1] - middle[1])
-        towards = away if hypot(*away) > 1 else (0.0, 1.0)
+        towards = away if offsets is None and hypot(*away) > 1 else (0.0, 1.0)
         wide = sum(max(6.9, 3.45 * len(symbol(name))) for name in group)
-        yield Label(text, at, (wide + 2.9 * (len(group) - 1), LABEL_HALF_HEIGHT), towards)
+        half = wide + 2.9 * (len(group) - 1), LABEL_HALF_HEIGHT
+        yield Label(text, at, half, (offsets or {}).get(text, towards))

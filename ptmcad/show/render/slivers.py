@@ -11,19 +11,19 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from functools import lru_cache
-from typing import Any
+from typing import Any, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ptmcad.answer.regionmap import Merge, Region, RegionMap
+from ptmcad.answer.regionmap import Cell, Merge, Region, RegionMap
 from ptmcad.cover.subdivision import connected
 from ptmcad.show.render.colours import INK
 from ptmcad.show.render.inches import text_width
-from ptmcad.show.render.labels import Box, Label, Position, Stroke, around, place, polyline
+from ptmcad.show.render.labels import Box, Label, Stroke, around, place, polyline
+from ptmcad.show.render.outline import Shapes
 from ptmcad.show.render.polylines import simplified_line
-from ptmcad.show.render.view import Interval, Point, Same, Shapes, View
+from ptmcad.show.render.view import Interval, Point, View, remembered
 from ptmcad.show.style import Size
 from ptmcad.show.table import count_text
 
@@ -50,12 +50,8 @@ class Sliver:
     cell: int | None = None
 
 
-@dataclass(frozen=True, slots=True)
-class Zoom:
-    """A view that shows some slivers clearly."""
-
-    outline: Shapes
-    slivers: tuple[Sliver, ...]
+Zoom: TypeAlias = "tuple[Shapes, tuple[Sliver, ...]]"
+"""A view that shows some slivers clearly."""
 
 
 def thin_regions(whole: Shapes, pixels: int) -> tuple[int, ...]:
@@ -82,22 +78,25 @@ def unstable_zooms(whole: Shapes, pixels: int, most: int) -> tuple[Zoom, ...]:
     finer = told_apart(result)
     outline: Any = whole
     in_parts: Shapes = replace(outline, result=finer)
+
+    def part(region: int) -> Cell:
+        return result.cells[finer.regions[region].cells[0]]
+
     parts = [
-        n for n in thin_regions(in_parts, pixels)
-        if len(finer.regions[n].cells) < len(result.regions[result.cells[finer.regions[n].cells[0]].region].cells)
-    ]  # fmt: skip
+        n
+        for n in thin_regions(in_parts, pixels)
+        if len(finer.regions[n].cells) < len(result.regions[part(n).region].cells)
+    ]
     return tuple(
-        Zoom(
-            whole.in_view(zoom.outline.view),
-            tuple(_part(result, finer, sliver) for sliver in zoom.slivers),
+        (
+            whole.in_view(seen.view),
+            tuple(
+                Sliver(part(s.region).region, s.at, finer.regions[s.region].cells[0])
+                for s in slivers
+            ),
         )
-        for zoom in zooms(in_parts, parts, most)
+        for seen, slivers in zooms(in_parts, parts, most)
     )
-
-
-def _part(result: RegionMap, finer: RegionMap, sliver: Sliver) -> Sliver:
-    cell = finer.regions[sliver.region].cells[0]
-    return Sliver(result.cells[cell].region, sliver.at, cell)
 
 
 def seen_thin_walls(whole: Shapes, sides: Size) -> bool:
@@ -120,14 +119,9 @@ def seen_thin_walls(whole: Shapes, sides: Size) -> bool:
     )
 
 
+@remembered(32)
 def told_apart(result: RegionMap) -> RegionMap:
     """An exact map whose regions are joined only where all counts of both cells are equal."""
-    return _told_apart(Same(result))
-
-
-@lru_cache(maxsize=32)
-def _told_apart(of: Same[RegionMap]) -> RegionMap:
-    result = of.it
     alike = np.array(
         [
             (adjacency.first, adjacency.second)
@@ -163,7 +157,7 @@ def zooms(whole: Shapes, thin: Sequence[int], most: int = MAX_ZOOMS) -> tuple[Zo
         seen = _zoom(whole, waiting[0])
         thick = {n: _thick(seen, n) for n in waiting}
         shown = [n for n, (depth, _) in thick.items() if depth >= _CLEAR or n == waiting[0]]
-        found.append(Zoom(seen, tuple(Sliver(n, thick[n][1]) for n in shown)))
+        found.append((seen, tuple(Sliver(n, thick[n][1]) for n in shown)))
         waiting = [n for n in waiting if n not in shown]
     return tuple(found)
 
@@ -281,18 +275,10 @@ their places, as a share of the picture.
 """
 
 
-@dataclass(frozen=True, slots=True)
-class Arrow:
-    """An arrow with a label to a sliver: the label's centre, as fractions of the picture's sides, its
-    size in points, and whether it is clear of everything.
-    """
-
-    sliver: Sliver
-    name: str
-    tip: Position
-    label: Position
-    size: float
-    clear: bool
+Arrow = tuple[Sliver, bool, dict[str, Any]]
+"""An arrow with a label to a sliver: whether it is clear of everything, and what `draw_arrows`
+draws, its places being fractions of the picture's sides.
+"""
 
 
 def ranked(whole: Shapes, slivers: Sequence[Sliver], thin: Sequence[int]) -> list[Sliver]:
@@ -344,7 +330,13 @@ def arrows(
     strokes = _borders(whole, sides) if labels else ()
     placed = place(labels, strokes, around_tips, bounds, [scale * d for d in _DISTANCES], skip)
     return [
-        Arrow(sliver, one.label.text, tip, (one.center[0] / sides[0], one.center[1] / sides[1]), size, one.clear)
+        (
+            sliver, one.clear,
+            {
+                "text": one.text, "xy": tip, "xytext": (one.center[0] / sides[0], one.center[1] / sides[1]),
+                "fontsize": size, "gid": f"arrow-{sliver.region}",
+            },
+        )
         for (sliver, _), tip, one in zip(named, tips, placed, strict=True)
     ]  # fmt: skip
 
@@ -355,11 +347,6 @@ def _borders(whole: Shapes, sides: Size) -> Iterator[Stroke]:
     lines += [simplified_line(line, _ROUGHLY) for line in whole.edges()]
     for line in lines:
         yield from polyline((line * sides).tolist(), 0.5)
-
-
-def counts_of(result: RegionMap) -> list[str]:
-    """The counts of all regions as texts."""
-    return [count_text(region, result.slice.count) for region in result.regions]
 
 
 def arrows_of(
@@ -375,23 +362,24 @@ def arrows_of(
     names : of the regions, in their order, empty for those that need no mark; else their counts.
         Regions with names are drawn with rims of their own colour, so that thinner ones are seen.
     """
-    resolved = RESOLVED if names is None else RIMMED
-    said = names if names is not None else counts_of(whole.result)
+    resolved, said = RIMMED, names
+    if said is None:
+        count = whole.result.slice.count
+        resolved, said = RESOLVED, [count_text(region, count) for region in whole.result.regions]
     thin = [n for n in thin_regions(whole, round(min(sides) * min(dpi, resolved))) if said[n]]
     slivers = ranked(whole, [Sliver(n, inside(whole, n)) for n in thin], thin)
     named = [(sliver, said[sliver.region]) for sliver in slivers]
     points = (72 * sides[0], 72 * sides[1])
-    found = [arrow for arrow in arrows(whole, named, points, size) if arrow.clear]
+    found = [arrow for arrow in arrows(whole, named, points, size) if arrow[1]]
     return found, len(thin) - len(found)
 
 
 def draw_arrows(axes: Any, found: Iterable[Arrow], scale: float) -> None:
     """The arrows and their labels."""
-    for arrow in found:
+    for _, _, own in found:
         axes.annotate(
-            arrow.name, xy=arrow.tip, xytext=arrow.label, xycoords="axes fraction", textcoords="axes fraction",
-            ha="center", va="center", fontsize=arrow.size, color=INK, zorder=6,
-            gid=f"arrow-{arrow.sliver.region}", annotation_clip=False,
+            xycoords="axes fraction", textcoords="axes fraction", ha="center", va="center", color=INK, zorder=6,
+            annotation_clip=False, **own,
             bbox={"boxstyle": "round,pad=0.25", "facecolor": "white", "edgecolor": INK, "linewidth": 0.5},
             arrowprops={
                 "arrowstyle": "-|>", "color": INK, "linewidth": 0.9 * scale, "mutation_scale": 8 * scale,

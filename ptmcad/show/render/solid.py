@@ -7,7 +7,6 @@ the sheets of a boundary surface, where one is given; the picture says that they
 
 from __future__ import annotations
 
-from dataclasses import replace
 from fractions import Fraction
 from typing import Any
 
@@ -19,14 +18,20 @@ from ptmcad.answer.counts import counted_by
 from ptmcad.answer.family import FamilyMap
 from ptmcad.answer.regionmap import RegionMap
 from ptmcad.show.render.axes import axis_name, symbol
-from ptmcad.show.render.chartgrid import HeadAndFoot, family_entries, in_words, title_of, value_text
+from ptmcad.show.render.chartgrid import (
+    family_entries,
+    head_and_foot,
+    in_words,
+    title_of,
+    value_text,
+)
 from ptmcad.show.render.colours import INK, STRONG, THIN, Paint, paint_of
 from ptmcad.show.render.inches import Box, text_width
-from ptmcad.show.render.legend import Entry, Type
+from ptmcad.show.render.legend import Entry
 from ptmcad.show.render.outline import shapes
 from ptmcad.show.render.printing import settings
 from ptmcad.show.render.surfacepicture import BOX, add_sheets, sheet_colours, sheet_entries
-from ptmcad.show.style import MIN_FONT, PictureStyle
+from ptmcad.show.style import MIN_FONT, LegendPlace, PictureStyle
 from ptmcad.show.units import unit_of_free, with_unit
 
 SIZE = (5.8, 5.5)
@@ -49,10 +54,8 @@ def solid_figure(
     """
     with settings(style):
         figure = _figure(family, dpi, style, surface)
-    words = (
-        in_words(family) if surface is None else f"{in_words(family)}. Surface: {surface.words()}"
-    )
-    figure.set_label(f"{title_of(family)}, in three dimensions\n{words}")
+    words = "" if surface is None else f". Surface: {surface.words()}"
+    figure.set_label(f"{title_of(family)}, in three dimensions\n{in_words(family)}{words}")
     return figure
 
 
@@ -64,7 +67,6 @@ def _figure(
     wide, tall = style.size or SIZE
     figure = Figure(figsize=(wide, tall), dpi=dpi, facecolor="white")
     paint = paint_of(style, *family.members)
-    type = replace(Type.of(style), thin_lines="solid")
     colours = {} if surface is None else sheet_colours(family, surface, paint)
     legend = family_entries(family, paint)
     if surface is None:
@@ -72,8 +74,11 @@ def _figure(
     else:
         fills = [entry for entry in legend if entry.mark != STRONG]
         legend = sheet_entries(surface, colours, fills if _lowest(family) else fills[:1])
-    around = HeadAndFoot.of(title_of(family), legend, wide, style, type)
-    head, foot = around.head, around.foot if around.rows else 0.0
+    head, foot, draw = head_and_foot(
+        title_of(family), legend, wide, style._replace(thin_lines="solid")
+    )
+    if style.legend is LegendPlace.NONE:
+        foot = 0.0
     # names of axes are so many letters below the box, whose lowest corner is a tenth above the
     # axes' end
     foot += max(0.0, 4.8 * em - 0.1 * (tall - head - foot))
@@ -96,7 +101,7 @@ def _figure(
             inches = min(box[2] * wide, box[3] * tall) / _BOX_DIAGONAL
             add_sheets(axes, surface, colours, _curves(family), 0.6 * paint.strong / 72 / inches)
     _limit(axes, family)
-    around.draw(figure)
+    draw(figure)
     return figure
 
 

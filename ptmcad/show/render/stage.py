@@ -10,17 +10,15 @@ Not guaranteed: anything that only the pictures show. They are drawn in floating
 from __future__ import annotations
 
 import textwrap
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from dataclasses import replace
 from fractions import Fraction
-from functools import partial
 from math import degrees, remainder
 from typing import Any
 
 import numpy as np
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
-from matplotlib.lines import Line2D
 from numpy.typing import NDArray
 
 from ptmcad.answer.motion import Motion, Step
@@ -32,13 +30,13 @@ from ptmcad.show.drawable import no_drawing
 from ptmcad.show.render.axes import Dress, dress, symbol
 from ptmcad.show.render.colours import INK, paint_of
 from ptmcad.show.render.inches import axes_at, text_width, write
-from ptmcad.show.render.labels import Placed, Position
+from ptmcad.show.render.labels import Label, Position
 from ptmcad.show.render.legend import Entry, Rows, Type, count_entries, draw_rows, head_of, in_rows
 from ptmcad.show.render.mappicture import whole_title
 from ptmcad.show.render.mechanism import PALE, STRONG, draw_sketch
 from ptmcad.show.render.outline import shapes
 from ptmcad.show.render.painting import paint_map
-from ptmcad.show.render.sketch import Sketch, arrows_of, components, own_labels, sketched
+from ptmcad.show.render.sketch import Sketch, arrows_of, components, sketched
 from ptmcad.show.render.view import Point, View
 from ptmcad.show.style import PictureStyle, Size
 from ptmcad.text.expressions import values_at
@@ -68,25 +66,20 @@ FOLLOWED, STABLE, UNSTABLE = "#111111", "#3d6b8c", "#bdbdbd"
 Pixels = NDArray[np.uint8]
 
 
-def check_drawable(motion: Motion) -> Mechanism:
-    """The mechanism that is drawn.
+class Stage:
+    """The pictures of a motion, one for each of its steps; to be used within `printing.settings`.
 
     Raises
     ------
     ConfigError
-        For a system: it has no points to be drawn.
+        For a system, which has no points to be drawn, and for a size that is too small.
     """
-    model = motion.result.slice.model
-    if model.drawable is None:
-        raise ConfigError(no_drawing(model))
-    return model.drawable
-
-
-class Stage:
-    """The pictures of a motion, one for each of its steps; to be used within `printing.settings`."""
 
     def __init__(self, motion: Motion, style: PictureStyle, dpi: int):
-        self.motion, self.mechanism = motion, check_drawable(motion)
+        model = motion.result.slice.model
+        if model.drawable is None:
+            raise ConfigError(no_drawing(model))
+        self.motion, self.mechanism = motion, model.drawable
         size = style.size or SIZE
         if size[0] < MIN_SIZE[0] or size[1] < MIN_SIZE[1]:
             raise ConfigError(
@@ -129,9 +122,6 @@ class Stage:
             self.curve = axes_at(self.figure, (left + 0.35, foot, wide - 0.35, chart), "energy")
             self._energy()
 
-    def __len__(self) -> int:
-        return len(self.motion.steps)
-
     def frame(self, number: int) -> Pixels:
         """The picture of a step as an array of red, green and blue, shape (height, width, 3)."""
         self.canvas.restore_region(self.background)
@@ -164,26 +154,29 @@ class Stage:
         """The way so far, and the point."""
         steps = self.motion.steps[: number + 1]
         view = View.whole(self.motion.result)
-        track = [view.approximate_position(step.at) for step in steps]
+        xs, ys = zip(*(view.approximate_position(step.at) for step in steps), strict=True)
         colour = FALLING if steps[-1].falling else FOLLOWED
-        line = Line2D(*zip(*track, strict=True), color=FOLLOWED, linewidth=2.0, transform=self.chart.transAxes,
-                      zorder=7, solid_capstyle="round")  # fmt: skip
-        point = Line2D(
-            *([value] for value in track[-1]), marker="o", markersize=9, markerfacecolor="white",
-            markeredgecolor=colour, markeredgewidth=2.2, linestyle="none", zorder=8, clip_on=False,
-            transform=self.chart.transAxes,
+        look = {"transform": self.chart.transAxes}
+        line = self.chart.plot(
+            xs, ys, color=FOLLOWED, linewidth=2.0, zorder=7, solid_capstyle="round", **look
+        )
+        point = self.chart.plot(
+            xs[-1:], ys[-1:], marker="o", markersize=9, markerfacecolor="white", markeredgecolor=colour,
+            markeredgewidth=2.2, linestyle="none", zorder=8, clip_on=False, **look,
         )  # fmt: skip
-        return [self.chart.add_artist(artist) for artist in (line, point)]
+        return [*line, *point]
 
     def _marble(self, number: int) -> list[Any]:
         """The followed pose's energy so far, and where it is."""
         steps = self.motion.steps[: number + 1]
-        shares = [100 * s.share for s in steps]
-        heights = [s.height for s in steps if s.height is not None]
-        line = Line2D(shares, heights, color=FOLLOWED, linewidth=1.4, zorder=4)
-        marble = Line2D(shares[-1:], heights[-1:], marker="o", markersize=7, linestyle="none", zorder=5, clip_on=False,
-                        markerfacecolor=FALLING if steps[-1].falling else "white", markeredgecolor=INK)  # fmt: skip
-        return [self.curve.add_artist(artist) for artist in (line, marble)]
+        xs, heights = [100 * step.share for step in steps], [step.height for step in steps]
+        face = FALLING if steps[-1].falling else "white"
+        line = self.curve.plot(xs, heights, color=FOLLOWED, linewidth=1.4, zorder=4)
+        marble = self.curve.plot(
+            xs[-1:], heights[-1:], marker="o", markersize=7, linestyle="none", zorder=5, clip_on=False,
+            markerfacecolor=face, markeredgecolor=INK,
+        )  # fmt: skip
+        return [*line, *marble]
 
     def _said(self, step: Step) -> Iterator[Any]:
         """Where the point is, what is drawn, and its unknowns."""
@@ -193,17 +186,17 @@ class Stage:
         ).replace("-", "−")
         yield self._text(self.where, where, SIZES[1])
         if step.falling:
-            what, colour = "the pose has vanished: steepest descent, no equilibrium", FALLING
-        elif step.total is None and step.stable is None:
-            what, colour = "equilibrium; the number of all is not known here", INK
-        elif step.total is None:
-            what, colour = f"equilibrium; exactly {step.stable} stable here", INK
-        else:
+            what = "the pose has vanished: steepest descent, no equilibrium"
+        elif step.total is not None:
             stable = f", {step.stable} stable" if step.stable is not None else ""
-            what, colour = f"one of exactly {counted(model, step.total)}{stable}", INK
+            what = f"one of exactly {counted(model, step.total)}{stable}"
+        elif step.stable is not None:
+            what = f"equilibrium; exactly {step.stable} stable here"
+        else:
+            what = "equilibrium; the number of all is not known here"
         wide = self.sides[0] / 72
         size = min(SIZES[1], SIZES[1] * wide / text_width(what, SIZES[1]))
-        yield self._text(self.above, what, size, colour)
+        yield self._text(self.above, what, size, FALLING if step.falling else INK)
         turns = len(model.angles)
         angles = (f"{remainder(degrees(angle), 360):.1f}°" for angle in step.unknowns[:turns])
         texts = assignments(model, angles, (f"{x:.4g}" for x in step.unknowns[turns:]), symbol)
@@ -216,10 +209,9 @@ class Stage:
         dress(
             self.chart, result.slice, whole.view.x, whole.view.y, Dress(SIZES[2], SIZES[1], (6, 6))
         )
-        track = [whole.view.approximate_position(at) for at in self.motion.path]
-        self.chart.add_artist(
-            Line2D(*zip(*track, strict=True), color=INK, linewidth=0.9, linestyle=(0, (4, 2)),
-                   transform=self.chart.transAxes, zorder=6)
+        xs, ys = zip(*map(whole.view.approximate_position, self.motion.path), strict=True)
+        self.chart.plot(
+            xs, ys, color=INK, linewidth=0.9, linestyle=(0, (4, 2)), transform=self.chart.transAxes, zorder=6
         )  # fmt: skip
 
     def _energy(self) -> None:
@@ -244,9 +236,8 @@ class Stage:
         axes.yaxis.set_major_locator(MaxNLocator(nbins=3))
         axes.tick_params(labelsize=SIZES[2], length=2.5)
         axes.set_xlabel("% of the path", fontsize=SIZES[1], labelpad=1)
-        several = any(s.others for s in steps)
         axes.set_ylabel("energy", fontsize=SIZES[1], labelpad=2)
-        if several:
+        if any(s.others for s in steps):
             axes.set_title(
                 f"dots: {which}, stable ones blue", fontsize=SIZES[2], loc="right", pad=2
             )
@@ -273,34 +264,25 @@ def _places(motion: Motion, mechanism: Mechanism, sides: Size) -> Iterator[dict[
 
 def _sketches(motion: Motion, mechanism: Mechanism, sides: Size) -> list[Sketch]:
     """The mechanism at each step; labels keep their side while they can, and glide where they
-    cannot.
+    cannot: they stand at the mean of where they would in the steps around, and no lines lead to them.
     """
     arrows, sketches = _arrows(motion, mechanism), list[Sketch]()
-    offsets: dict[str, Position] = {}
-    ways: list[dict[str, Position]] = []
+    ways: list[dict[str, Position]] = [{}]
     for step, nodes in zip(motion.steps, _places(motion, mechanism, sides), strict=True):
-        labels = partial(own_labels, offsets=dict(offsets))
-        seen = sketched(mechanism, nodes, sides, arrows[step.at], TURNS, labels)
-        offsets = {
-            p.label.text: (p.center[0] - p.label.at[0], p.center[1] - p.label.at[1])
-            for p in seen.labels
-        }
+        seen = sketched(mechanism, nodes, sides, arrows[step.at], TURNS, ways[-1])
         sketches.append(seen)
-        ways.append(offsets)
+        ways.append({p.text: (p.center[0] - p.at[0], p.center[1] - p.at[1]) for p in seen.labels})
+
+    def glided(placed: Label, number: int) -> Label:
+        near = ways[max(1, number - GLIDE + 1) : number + GLIDE + 2]
+        x, y = (sum(way[placed.text][k] for way in near) / len(near) for k in (0, 1))
+        center = (placed.at[0] + x, placed.at[1] + y)
+        return replace(placed, center=center, leader=None)
+
     return [
-        replace(seen, labels=tuple(_glided(seen.labels, ways, k)))
+        replace(seen, labels=tuple(glided(placed, k) for placed in seen.labels))
         for k, seen in enumerate(sketches)
     ]
-
-
-def _glided(
-    labels: Iterable[Placed], ways: list[dict[str, Position]], number: int
-) -> Iterator[Placed]:
-    """Labels at the mean of where they stand in the steps around, without lines that lead to them."""
-    near = ways[max(0, number - GLIDE) : number + GLIDE + 1]
-    for placed in labels:
-        x, y = (sum(way[placed.label.text][k] for way in near) / len(near) for k in (0, 1))
-        yield replace(placed, center=(placed.label.at[0] + x, placed.label.at[1] + y), leader=None)
 
 
 def _arrows(motion: Motion, mechanism: Mechanism) -> dict[Point, dict[str, float]]:
@@ -308,10 +290,10 @@ def _arrows(motion: Motion, mechanism: Mechanism) -> dict[Point, dict[str, float
     motion.
     """
     parameters = motion.result.slice.parameters
-    forces = {}
-    for at in {step.at for step in motion.steps}:
-        values = values_at(parameters, *at)
-        forces[at] = components(loads_at(mechanism, values))
+    forces = {
+        at: components(loads_at(mechanism, values_at(parameters, *at)))
+        for at in {step.at for step in motion.steps}
+    }
     largest = max(
         (abs(force) for own in forces.values() for force in own.values()), default=Fraction(0)
     )

@@ -1,17 +1,17 @@
-"""What a picture of a region map is drawn from: a view of its window, and the shapes seen in it,
-whatever the engine.
+"""What a picture of a region map is drawn from, whatever the engine: a view of its window, and the
+kinds of shapes that are seen in it.
 
-Guarantee: none but that of the classes that have these methods, `ptmcad.show.render.outline` for
-exact maps and `ptmcad.show.render.coveroutline` for certified ones. Positions are fractions of the
-view's sides.
+`ptmcad.show.render.outline` has the shapes of exact maps, `ptmcad.show.render.coveroutline` those of
+certified ones, by methods of the same names. Positions are fractions of the view's sides.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import Generic, Protocol, TypeVar
+from functools import lru_cache, wraps
+from typing import Any, TypeVar, cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -27,22 +27,33 @@ CellShape = tuple[int, list[Floats]]
 """A cell's number and its closed polygons."""
 WallShape = tuple[int, bool, Floats]
 """The component that a wall lies on, whether it separates two regions, and its polyline."""
-T = TypeVar("T")
+Function = TypeVar("Function", bound=Callable[..., Any])
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Same(Generic[T]):
-    """A key that only the very same object equals: to compare whole maps would take as long as to
-    draw them.
-    """
+class _Same:
+    """A key that only the very same object equals."""
 
-    it: T
+    it: object
 
     def __eq__(self, other: object) -> bool:
-        return isinstance(other, Same) and other.it is self.it
+        return isinstance(other, _Same) and other.it is self.it
 
     def __hash__(self) -> int:
         return id(self.it)
+
+
+def remembered(most: int) -> Callable[[Function], Function]:
+    """A decorator that keeps so many answers, by the identity of the first argument: to compare whole
+    maps would take as long as to draw them.
+    """
+
+    def decorated(function: Function) -> Function:
+        kept = lru_cache(most)(lambda of, *others: function(of.it, *others))
+        found: Any = wraps(function)(lambda it, *others: kept(_Same(it), *others))
+        return cast(Function, found)
+
+    return decorated
 
 
 @dataclass(frozen=True, slots=True)
@@ -76,50 +87,3 @@ def from_above(line: Floats, side: float) -> Floats:
     """
     placed: Floats = np.stack([line[:, 0], 1 - line[:, 1]], axis=1) * side
     return placed
-
-
-class Shapes(Protocol):
-    """The shapes of a map in a view."""
-
-    @property
-    def result(self) -> RegionMap:
-        """The map."""
-        ...
-
-    @property
-    def view(self) -> View:
-        """The part of its window that is shown."""
-        ...
-
-    def in_view(self, view: View) -> Shapes:
-        """The same map in another view."""
-        ...
-
-    def polygons(self, region: int, tolerance: float = 0.0) -> Iterator[Floats]:
-        """Closed polygons, shape (k, 2), that together bound a region's part of the view.
-
-        Parameters
-        ----------
-        tolerance : of the view's side; outlines may depart by as much, to have fewer corners, and
-            still meet where they are the same wall. None is left out, even one that shrinks to a
-            line or a point.
-        """
-        ...
-
-    def cells(self, tolerance: float = 0.0) -> Iterator[CellShape]:
-        """Every cell of the view and its closed polygons, with a tolerance as ``polygons`` has one."""
-        ...
-
-    def walls(self, tolerance: float = 0.0) -> Iterator[WallShape]:
-        """Every wall, with such a tolerance."""
-        ...
-
-    def edges(self) -> Iterator[Floats]:
-        """The rims of what is undetermined, as polylines."""
-        ...
-
-    def raster(self, columns: int, rows: int) -> NDArray[np.int64]:
-        """The region at the centre of every pixel, shape (rows, columns), from the bottom; -1 where
-        there is none.
-        """
-        ...

@@ -37,15 +37,10 @@ MAX_MAPS = 1024
 _MAX_ERROR = 200
 
 
-@dataclass(frozen=True, slots=True)
-class SheetFrame:
-    """What all maps of a sweep have in common: the axes' names and windows as texts, and what is
-    counted.
-    """
-
-    axes: tuple[tuple[str, str, str], ...]
-    heading: str
-    counted: str
+SheetFrame = tuple[tuple[tuple[str, str, str], ...], str, str]
+"""What all maps of a sweep have in common: the axes' names and windows as texts, a heading, and what
+is counted.
+"""
 
 
 def chosen(sweep: Sweep) -> Sequence[int]:
@@ -64,6 +59,7 @@ def atlas(
     members : those on the page, by their numbers.
     sketches : the drawings of those that have a result.
     """
+    axes, heading, counted = frame
     style = asset("page.css") + asset("atlas.css")
     script = "".join(asset(name) for name in SCRIPTS)
     fills = {fill for s in sketches.values() for fill in (s.plate, *(fill for fill, _ in s.paths))}
@@ -73,15 +69,15 @@ def atlas(
     columns = len(values[sweep.names[-1]]) if _is_table(values, members) else 0
     return template("atlas.html").substitute(
         policy=escape(policy_of(style, script)),
-        title=escape(frame.heading or sweep.name),
+        title=escape(heading or sweep.name),
         name=escape(sweep.name),
         banner="".join(_banners(sweep, members)),
         patterns=pattern_defs(sorted(fills, key=lambda fill: (fill.face, fill.hatch))),
-        across=escape(_axis(frame, 0)),
-        up=escape(_axis(frame, 1)),
+        across=escape(_axis(*axes[0])),
+        up=escape(_axis(*axes[1])),
         sheet="".join(_cell(sweep, member, sketches.get(member.number)) for member in members),
         side=str(SIDE),
-        legend="".join(_legend(sketches.values(), frame)),
+        legend="".join(_legend(sketches.values(), counted)),
         order=escape(_order(sweep, columns)),
         version=escape(__version__),
         data=harmless(_data(sweep, frame, members, values, columns)),
@@ -114,8 +110,7 @@ def _sorted(values: Iterable[str]) -> list[str]:
     return sorted(values, key=fraction_of)
 
 
-def _axis(frame: SheetFrame, number: int) -> str:
-    name, low, high = frame.axes[number]
+def _axis(name: str, low: str, high: str) -> str:
     return f"{symbol(name)} from {low} to {high}"
 
 
@@ -153,12 +148,12 @@ def _cell(sweep: Sweep, member: Member, sketch: Thumbnail | None) -> str:
     )
 
 
-def _legend(sketches: Collection[Thumbnail], frame: SheetFrame) -> Iterator[str]:
+def _legend(sketches: Collection[Thumbnail], counted: str) -> Iterator[str]:
     """The fills of all counts that occur, in the order of the counts, and that of what is
     undetermined.
     """
     found = {text: fill for each in sketches for text, fill in each.legend}
-    shown = [(f"{frame.counted}: {text}", found[text]) for text in sorted(found, key=in_order)]
+    shown = [(f"{counted}: {text}", found[text]) for text in sorted(found, key=in_order)]
     if any(each.plate == UNDETERMINED for each in sketches):
         shown.append(("undetermined", UNDETERMINED))
     for text, fill in shown:
@@ -187,15 +182,13 @@ def _data(
         {a.count for m in members if m.summary for a in m.summary.areas}, key=count_order
     )
     along = next((m.summary.widest.along for m in members if m.summary and m.summary.widest), "")
-    over = next((name for name, _, _ in frame.axes if name != along), "")
+    over = next((name for name, _, _ in frame[0] if name != along), "")
     return {
         "columns": columns,
-        "counted": frame.counted,
+        "counted": frame[2],
         "along": symbol(along),
         "over": symbol(over),
-        "axes": [
-            {"name": symbol(name), "low": low, "high": high} for name, low, high in frame.axes
-        ],
+        "axes": [{"name": symbol(name), "low": low, "high": high} for name, low, high in frame[0]],
         "swept": [
             {
                 "name": symbol(name),
@@ -265,7 +258,7 @@ def frame_of(sweep: Sweep, slice: Any, sketches: Iterable[Thumbnail]) -> SheetFr
         if slice.title
         else ", ".join(named(part, slice.parameters) for part in fixed)
     )
-    return SheetFrame(axes, heading, slice.count.value)
+    return axes, heading, slice.count.value
 
 
 SIDE = 800

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 from math import atan2
 from operator import gt
-from typing import Any, NamedTuple, TypeVar
+from typing import Any, TypeVar
 
 from flint import acb, arb, ctx
 
@@ -129,9 +129,9 @@ def _solutions(
     system = compiled(model)
     boxes = [_box(s, model, polynomial) for s in cell.solutions]
     drawn = system.shown
-    formulas = _Pose(system.potential(), drawn.points, drawn.stretches, drawn.elastic[1])
-    poses: list[_Pose] = [evaluated(formulas, _Within(system, values, box)) for box in boxes]
-    energies = [pose.energy for pose in poses]
+    formulas = (system.potential(), drawn.points, drawn.stretches, drawn.elastic[1])
+    poses: list[Any] = [evaluated(formulas, _Within(system, values, box)) for box in boxes]
+    energies = [energy for energy, *_ in poses]
     energy_place = last_place((ball for ball in energies if ball is not None), _DIGITS)
     turns = 2 * len(model.angles)
     reals = [box[turns:] for box in boxes]
@@ -161,46 +161,31 @@ def _solutions(
     return found
 
 
-class _Pose(NamedTuple):
-    """What is shown of a pose, as formulas, or as balls around their values."""
-
-    energy: Any
-    points: Mapping[str, tuple[Any, Any]]
-    stretches: tuple[tuple[Any, Any, Any], ...]
-    turned: tuple[Any, ...]
-
-
-def _parts(mechanism: Mechanism, poses: Sequence[_Pose]) -> list[dict[str, Any]]:
+def _parts(mechanism: Mechanism, poses: Sequence[Any]) -> list[dict[str, Any]]:
     """Of each equilibrium the points, and what springs of both sorts do."""
-    places = [
-        coordinate for pose in poses for place in pose.points.values() for coordinate in place
-    ]
-    lengths = [length for pose in poses for length, _, _ in pose.stretches]
-    length_place = last_place([*places, *lengths], _DIGITS)
-    forces = (force for pose in poses for _, _, force in pose.stretches)
-    force_place = last_place(forces, _DIGITS)
-    moments = (spring.moment for pose in poses for spring in pose.turned)
+    places = [x for _, points, _, _ in poses for place in points.values() for x in place]
+    stretches = [stretch for _, _, own, _ in poses for stretch in own]
+    length_place = last_place([*places, *(length for length, _, _ in stretches)], _DIGITS)
+    force_place = last_place((force for _, _, force in stretches), _DIGITS)
+    moments = (spring.moment for _, _, _, turned in poses for spring in turned)
     moment_place = last_place(moments, _DIGITS)
     found = []
-    for pose in poses:
-        shown = {
-            name: f"({ball_text(x, length_place)}, {ball_text(y, length_place)})"
-            for name, (x, y) in pose.points.items()
-        }
-        turned = [
-            (
-                _angle_text(degrees(spring.cosine, spring.sine)),
-                ball_text(spring.moment, moment_place),
-            )
-            for spring in pose.turned
-        ]
+    for _, points, own, turned in poses:
+        moving = (points[name] for name in mechanism.moving)
         entry: dict[str, Any] = {
-            "nodes": [[_drawn(x) for x in place] for place in pose.points.values()],
-            "places": [shown[name] for name in mechanism.moving],
-            "lengths": [ball_text(length, length_place) for length, _, _ in pose.stretches],
-            "forces": [ball_text(force, force_place) for _, _, force in pose.stretches],
+            "nodes": [[_drawn(x) for x in place] for place in points.values()],
+            "places": [
+                f"({ball_text(x, length_place)}, {ball_text(y, length_place)})" for x, y in moving
+            ],
+            "lengths": [ball_text(length, length_place) for length, _, _ in own],
+            "forces": [ball_text(force, force_place) for _, _, force in own],
         }
-        found.append(entry | ({"deflections": turned} if turned else {}))
+        if turned:
+            entry["deflections"] = [
+                (_angle_text(degrees(s.cosine, s.sine)), ball_text(s.moment, moment_place))
+                for s in turned
+            ]
+        found.append(entry)
     return found
 
 

@@ -8,14 +8,14 @@ of it is drawn and given in the table.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 from html import escape
 from math import ceil, floor, log10
+from operator import itemgetter
 from pathlib import Path
 from typing import TypeVar
 
 from ptmcad.show.report.sections import table
-from ptmcad.text.codec import Codec, line, listed, record_of
+from ptmcad.text.codec import Codec, Key, line, listed, record
 from ptmcad.text.node import Node, opened
 from ptmcad.text.numerals import power_of_ten
 from ptmcad.text.textfile import read_as
@@ -35,22 +35,14 @@ _MARKS = (
 T = TypeVar("T")
 
 
-@dataclass(frozen=True, slots=True)
-class MeasuredSeries:
-    """Measurements of one method: pairs (seconds, error), both positive, in the order in which they
-    are joined.
-    """
-
-    name: str
-    points: tuple[tuple[float, float], ...]
+Series = tuple[str, tuple[tuple[float, float], ...]]
+"""Measurements of one method: its name and pairs (seconds, error), both positive, in the order in
+which they are joined.
+"""
 
 
-@dataclass(frozen=True, slots=True)
-class ErrorCurve:
-    """What the error is, in words, and its measurements."""
-
-    error: str
-    series: tuple[MeasuredSeries, ...]
+ErrorCurve = tuple[str, tuple[Series, ...]]
+"""What the error is, in words, and its measurements."""
 
 
 def read_error_curve(path: Path) -> ErrorCurve:
@@ -88,23 +80,27 @@ def _some(codec: Codec[T], most: int) -> Codec[tuple[T, ...]]:
     return Codec(list, read)
 
 
-_SERIES = record_of(
-    MeasuredSeries,
-    name=line(60),
-    points=_some(listed(Codec[float](float, _positive), 2), _MAX_POINTS),
+_SERIES: Codec[Series] = record(
+    lambda name, points: (name, points),
+    name=Key(line(60), itemgetter(0)),
+    points=Key(_some(listed(Codec[float](float, _positive), 2), _MAX_POINTS), itemgetter(1)),
 )
-_CURVE = record_of(ErrorCurve, error=line(200), series=_some(_SERIES, _MAX_SERIES))
+_CURVE: Codec[ErrorCurve] = record(
+    lambda error, series: (error, series),
+    error=Key(line(200), itemgetter(0)),
+    series=Key(_some(_SERIES, _MAX_SERIES), itemgetter(1)),
+)
 
 
 def error_section(curve: ErrorCurve) -> str:
     """The section: picture, legend and table."""
-    rows = ((escape(s.name), f"{x:.4g}", f"{y:.3g}") for s in curve.series for x, y in s.points)
+    rows = ((escape(name), f"{x:.4g}", f"{y:.3g}") for name, points in curve[1] for x, y in points)
     legend = "".join(
-        f"<li>{_sample(k)}<span>{escape(s.name)}</span></li>" for k, s in enumerate(curve.series)
+        f"<li>{_sample(k)}<span>{escape(name)}</span></li>" for k, (name, _) in enumerate(curve[1])
     )
     return (
         '<section aria-labelledby="h-errors"><h2 id="h-errors">Error against time</h2>'
-        f'<p>{escape(curve.error)}</p>{"".join(_picture(curve))}<ul class="legend">{legend}</ul>'
+        f'<p>{escape(curve[0])}</p>{"".join(_picture(curve))}<ul class="legend">{legend}</ul>'
         f"<details><summary>The measurements</summary>{table(('method', 'seconds', 'error'), rows, 'Measurements')}"
         "</details></section>"
     )
@@ -120,10 +116,10 @@ def _sample(number: int) -> str:
 
 
 def _picture(curve: ErrorCurve) -> Iterator[str]:
-    points = [point for s in curve.series for point in s.points]
+    points = [point for _, own in curve[1] for point in own]
     (left, right), (low, high) = (_decades([p[k] for p in points]) for k in (0, 1))
     yield f'<svg class="map chart" viewBox="0 0 {_LEFT + _WIDTH + 24} {24 + _HEIGHT + _BOTTOM}" role="img" '
-    yield f'aria-label="{escape(curve.error)}, against seconds"><g transform="translate({_LEFT} 24)">'
+    yield f'aria-label="{escape(curve[0])}, against seconds"><g transform="translate({_LEFT} 24)">'
 
     def across(decade: float) -> float:
         return (decade - left) / (right - left) * _WIDTH
@@ -142,8 +138,8 @@ def _picture(curve: ErrorCurve) -> Iterator[str]:
     yield f'<text class="name" x="{_WIDTH / 2}" y="{_HEIGHT + _BOTTOM - 16}">seconds</text>'
     yield f'<text class="name" transform="translate({36 - _LEFT} {_HEIGHT / 2}) rotate(-90)">error</text>'
     yield f'<rect class="frame" width="{_WIDTH}" height="{_HEIGHT}"/>'
-    for k, s in enumerate(curve.series):
-        places = [(across(log10(x)), down(log10(y))) for x, y in s.points]
+    for k, (_, own) in enumerate(curve[1]):
+        places = [(across(log10(x)), down(log10(y))) for x, y in own]
         yield f'<path class="series s{k}" d="M{"L".join(f"{x:.1f} {y:.1f}" for x, y in places)}"/>'
         for x, y in places:
             mark = _MARKS[k % len(_MARKS)]

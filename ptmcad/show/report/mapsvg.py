@@ -11,7 +11,6 @@ itself.
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 from fractions import Fraction
 from html import escape
 from math import ceil
@@ -26,9 +25,10 @@ from ptmcad.question.counts import Count
 from ptmcad.show.render.axes import scale_of, symbol, ticks
 from ptmcad.show.render.colours import Fill, fill_of
 from ptmcad.show.render.labels import Position
+from ptmcad.show.render.outline import Shapes
 from ptmcad.show.render.polylines import GRID, path_data
 from ptmcad.show.render.slivers import innermost, thin_regions, zooms
-from ptmcad.show.render.view import Floats, Shapes, from_above
+from ptmcad.show.render.view import Floats, from_above
 from ptmcad.show.table import count_text
 from ptmcad.show.units import unit, with_unit
 from ptmcad.text.numerals import shortest_text
@@ -66,39 +66,20 @@ on the whole.
 """
 
 
-@dataclass(frozen=True, slots=True)
-class MapPictures:
-    """The whole window, and views of thin regions, as SVG; ``places`` are the samples' positions in
-    the window.
+def chart(seen: Shapes) -> tuple[str, tuple[str, ...], bool, int]:
+    """The whole window and views of thin regions as SVG; whether walls are seen that separate nothing,
+    and the number of thin regions without a view.
     """
-
-    whole: str
-    details: tuple[str, ...]
-    places: tuple[Position, ...]
-    thin_walls: bool
-    hidden: int
-
-
-def chart(seen: Shapes) -> MapPictures:
-    """The pictures of a map."""
-    result = seen.result
     thin = thin_regions(seen, MAP_PIXELS)
     views = zooms(seen, thin)
-    marks = [(chr(ord("A") + k), zoom) for k, zoom in enumerate(views)]
-    tips = [
-        (letter, seen.view.approximate_position(sliver.at))
-        for letter, zoom in marks
-        for sliver in zoom.slivers[:1]
-    ]
-    places = tuple(seen.view.approximate_position(c.sample) for c in result.cells)
-    return MapPictures(
-        whole=_picture(seen, "map", tips, region_labels(seen)),
-        details=tuple(_picture(zoom.outline, f"detail-{letter}", (), ()) for letter, zoom in marks),
-        places=places,
-        thin_walls=any(
-            not separates and n not in result.continua for n, separates, _ in seen.walls()
-        ),
-        hidden=len(thin) - sum(len(zoom.slivers) for zoom in views),
+    marks = [(chr(ord("A") + k), *zoom) for k, zoom in enumerate(views)]
+    tips = [(letter, seen.view.approximate_position(slivers[0].at)) for letter, _, slivers in marks]
+    continua = seen.result.continua
+    return (
+        _picture(seen, "map", tips, region_labels(seen)),
+        tuple(_picture(outline, f"detail-{letter}", (), ()) for letter, outline, _ in marks),
+        any(not separates and n not in continua for n, separates, _ in seen.walls()),
+        len(thin) - sum(len(slivers) for _, slivers in views),
     )
 
 
@@ -149,12 +130,12 @@ def _pattern(hatch: str) -> str:
 def _picture(seen: Shapes, name: str, marks: Sequence[Mark], labels: Sequence[Label]) -> str:
     result = seen.result
     count = result.slice.count
-    around = room(seen, detail=name != "map")
+    view, place, around = frame(seen, detail=name != "map")
     plate = "plate" if result.cover is None else "undetermined"
     parts = [
-        f'<svg id="{name}" class="map" role="group" viewBox="{around.view}" aria-label="{escape(_window_text(seen))}">',
+        f'<svg id="{name}" class="map" role="group" viewBox="{view}" aria-label="{escape(_window_text(seen))}">',
         f'<clipPath id="{name}-window"><rect width="{SIDE}" height="{SIDE}"/></clipPath>',
-        f'<g transform="{around.place}">',
+        f'<g transform="{place}">',
         f'<rect class="{plate}" width="{SIDE}" height="{SIDE}"/><g clip-path="url(#{name}-window)">',
     ]
     parts.append(f'<g transform="scale({1 / GRID:g})">')
@@ -166,7 +147,7 @@ def _picture(seen: Shapes, name: str, marks: Sequence[Mark], labels: Sequence[La
             f'<text class="count" x="{x * SIDE:.1f}" y="{(1 - y) * SIDE:.1f}" dy=".36em">{escape(text)}</text>'
         )
     parts.append("</g>")
-    parts += frame(seen, around)
+    parts.append(around)
     for letter, (x, y) in marks:
         parts.append(
             f'<g class="mark" transform="translate({x * SIDE:.1f} {(1 - y) * SIDE:.1f})"><circle r="13"/>'
@@ -314,73 +295,48 @@ def region_labels(seen: Shapes) -> list[Label]:
     return found
 
 
-@dataclass(frozen=True, slots=True)
-class Margins:
-    """What is left around the window for numbers and names, and the size of the names' type on
-    phones.
+def frame(seen: Shapes, detail: bool) -> tuple[str, str, str]:
+    """The picture's own coordinates as SVG has them, where the window begins, and the frame with ticks,
+    numbers and names, as elements of a group whose origin is its upper left corner.
+
+    Parameters
+    ----------
+    detail : whether this is a view of thin regions, where the type is larger.
     """
-
-    left: float
-    right: float
-    bottom: float
-    name: float
-
-    @property
-    def view(self) -> str:
-        """The picture's own coordinates, as SVG has them."""
-        return f"0 0 {self.left + SIDE + self.right} {RIM + SIDE + self.bottom}"
-
-    @property
-    def place(self) -> str:
-        """Where the window begins."""
-        return f"translate({self.left} {RIM})"
-
-
-def room(seen: Shapes, detail: bool) -> Margins:
-    """The room that the numbers of a view need: of the whole window, or of thin regions, where the
-    type is larger.
-    """
-    number, name = (_DETAIL, _DETAIL) if detail else (_NUMBER, _NAME)
-    across, up = (ticks(interval, scale_of(*interval)) for interval in (seen.view.x, seen.view.y))
-    beside = max((_width(text) for text, _ in up), default=0) * number
+    size, name_size = (_DETAIL, _DETAIL) if detail else (_NUMBER, _NAME)
+    slice = seen.result.slice
+    scales = [scale_of(*interval) for interval in (seen.view.x, seen.view.y)]
+    across, up = map(ticks, (seen.view.x, seen.view.y), scales)
+    wide = max((_width(text) for text, _ in up), default=0) * size
     beyond = max(
-        ((float(at) - 1) * SIDE + _width(text) * number / 2 for text, at in across), default=0
+        ((float(at) - 1) * SIDE + _width(text) * size / 2 for text, at in across), default=0
     )
-    return Margins(
-        left=ceil(max(_LEFT, 14 + beside + 6 + 1.3 * name)),
-        right=ceil(max(RIM, beyond + 2)),
-        bottom=ceil(max(_BOTTOM, 18 + 1.1 * number + 1.1 * name + 20)),
-        name=name,
+    left = ceil(max(_LEFT, 14 + wide + 6 + 1.3 * name_size))
+    right = ceil(max(RIM, beyond + 2))
+    bottom = ceil(max(_BOTTOM, 18 + 1.1 * size + 1.1 * name_size + 20))
+    parts = [f'<rect class="frame" width="{SIDE}" height="{SIDE}"/>']
+    places = (
+        f'x="{SIDE / 2}" y="{SIDE + bottom - 16}"',
+        f'transform="translate({name_size - left:g} {SIDE / 2}) rotate(-90)"',
     )
+    for number, (scale, found) in enumerate(zip(scales, (across, up), strict=True)):
+        for value, position in found:
+            at = float(position) * SIDE
+            if number == 0:
+                parts.append(f'<path class="tick" d="M{at:.1f} {SIDE}v8"/>')
+                place = f'class="number x" x="{at:.1f}" y="{SIDE + 18}" dy=".8em"'
+            else:
+                parts.append(f'<path class="tick" d="M0 {SIDE - at:.1f}h-8"/>')
+                place = f'class="number y" x="-14" y="{SIDE - at:.1f}" dy=".36em"'
+            parts.append(f"<text {place}>{value}</text>")
+        name = slice.axes[number].name
+        text = scale.name(symbol(name if len(name) <= _MAX_NAME else name[: _MAX_NAME - 1] + "…"))
+        text = escape(with_unit(text, unit(slice, number)))
+        parts.append(f'<text class="name" {places[number]}>{text}</text>')
+    view = f"0 0 {left + SIDE + right} {RIM + SIDE + bottom}"
+    return view, f"translate({left} {RIM})", "".join(parts)
 
 
 def _width(text: str) -> float:
     """Of a number, against its type's size."""
     return sum(_WIDTHS.get(character, 0.64) for character in text)
-
-
-def frame(seen: Shapes, room: Margins) -> Iterator[str]:
-    """The frame with ticks, numbers and names, as elements of a group whose origin is its upper
-    left corner.
-    """
-    yield f'<rect class="frame" width="{SIDE}" height="{SIDE}"/>'
-    slice = seen.result.slice
-    for number, interval in enumerate((seen.view.x, seen.view.y)):
-        scale = scale_of(*interval)
-        for value, position in ticks(interval, scale):
-            at = float(position) * SIDE
-            if number == 0:
-                yield f'<path class="tick" d="M{at:.1f} {SIDE}v8"/>'
-                yield f'<text class="number x" x="{at:.1f}" y="{SIDE + 18}" dy=".8em">{value}</text>'
-            else:
-                yield f'<path class="tick" d="M0 {SIDE - at:.1f}h-8"/>'
-                yield f'<text class="number y" x="-14" y="{SIDE - at:.1f}" dy=".36em">{value}</text>'
-        name = slice.axes[number].name
-        text = scale.name(symbol(name if len(name) <= _MAX_NAME else name[: _MAX_NAME - 1] + "…"))
-        known = unit(slice, number)
-        text = escape(with_unit(text, known))
-        if number == 0:
-            yield f'<text class="name" x="{SIDE / 2}" y="{SIDE + room.bottom - 16}">{text}</text>'
-        else:
-            place = f"translate({room.name - room.left:g} {SIDE / 2}) rotate(-90)"
-            yield f'<text class="name" transform="{place}">{text}</text>'

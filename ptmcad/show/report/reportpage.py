@@ -10,6 +10,7 @@ from __future__ import annotations
 import base64
 import hashlib
 import json
+from collections.abc import Sequence
 from html import escape
 from importlib.resources import files
 from string import Template
@@ -25,13 +26,12 @@ from ptmcad.model.work import split_moments
 from ptmcad.question.slice import Slice
 from ptmcad.show.render.axes import heading_of, symbol, with_symbols
 from ptmcad.show.render.colours import fill_of
-from ptmcad.show.render.outline import shapes
+from ptmcad.show.render.outline import Shapes, shapes
 from ptmcad.show.render.polylines import GRID
-from ptmcad.show.render.view import Shapes
 from ptmcad.show.report import sections
 from ptmcad.show.report.equilibria import at_sample, both
 from ptmcad.show.report.error_curve import ErrorCurve, error_section
-from ptmcad.show.report.mapsvg import SIDE, SLACK, MapPictures, chart, counts_text, pattern_defs
+from ptmcad.show.report.mapsvg import SIDE, SLACK, chart, counts_text, pattern_defs
 from ptmcad.show.report.scripttape import tape
 from ptmcad.show.report.sections import curves
 from ptmcad.show.table import region_area
@@ -69,7 +69,7 @@ def page(result: RegionMap, *, timings: bool = True, errors: ErrorCurve | None =
     """
     check_numbers(result)
     seen = _outline(result)
-    drawn = chart(seen)
+    whole, details, thin_walls, hidden = chart(seen)
     style, script = asset("page.css"), "".join(asset(name) for name in SCRIPTS)
     return template("page.html").substitute(
         policy=escape(policy_of(style, script)),
@@ -79,9 +79,9 @@ def page(result: RegionMap, *, timings: bool = True, errors: ErrorCurve | None =
         banner=sections.banner(result),
         question=sections.question(result),
         patterns=pattern_defs([fill_of(r, result.slice.count) for r in result.regions]),
-        map=drawn.whole,
-        details=_details(drawn),
-        legend=sections.legend(result, drawn),
+        map=whole,
+        details=_details(details),
+        legend=sections.legend(result, thin_walls, hidden),
         regions=sections.regions(result),
         curves=_curves(result),
         plan=sections.left_out(result),
@@ -89,7 +89,7 @@ def page(result: RegionMap, *, timings: bool = True, errors: ErrorCurve | None =
         errors=error_section(errors) if errors else "",
         again="".join(sections.again(result)),
         version=escape(__version__),
-        data=harmless(_data(result, drawn)),
+        data=harmless(_data(result, seen)),
         style=style,
         script=script,
     )
@@ -122,13 +122,13 @@ def _shown(model: Model) -> str:
     return " and its ".join(("its poses", *model.criterion.numbers[:1]))
 
 
-def _details(drawn: MapPictures) -> str:
+def _details(pictures: Sequence[str]) -> str:
     """The views of thin regions below the map."""
-    if not drawn.details:
+    if not pictures:
         return ""
     views = "".join(
         f"<figure>{picture}<figcaption>{chr(ord('A') + k)}, zoomed</figcaption></figure>"
-        for k, picture in enumerate(drawn.details)
+        for k, picture in enumerate(pictures)
     )
     return f'<div class="details" role="group" aria-label="Views of thin regions">{views}</div>'
 
@@ -217,7 +217,7 @@ def _declared(slice: Slice) -> dict[str, Any]:
     return {**declared_units(slice.model, slice.units), "unknowns": unknowns}
 
 
-def _data(result: RegionMap, drawn: MapPictures) -> dict[str, Any]:
+def _data(result: RegionMap, seen: Shapes) -> dict[str, Any]:
     """What the script shows and draws."""
     names, model = result.slice.axis_names, result.slice.model
     return {
@@ -258,6 +258,7 @@ def _data(result: RegionMap, drawn: MapPictures) -> dict[str, Any]:
                 "sample": [both(cell.sample[name]) for name in names],
                 **at_sample(result, cell),
             }
-            for cell, (x, y) in zip(result.cells, drawn.places, strict=True)
+            for cell in result.cells
+            for x, y in [seen.view.approximate_position(cell.sample)]
         ],
     }

@@ -18,7 +18,7 @@ from ptmcad.show.render.axes import named, symbol
 from ptmcad.show.render.colours import Fill, fill_of
 from ptmcad.show.render.legend import Entry, entries, hidden_entries
 from ptmcad.show.report.equilibria import both, distinct_parameters
-from ptmcad.show.report.mapsvg import MapPictures, counts_text, hatch_id
+from ptmcad.show.report.mapsvg import counts_text, hatch_id
 from ptmcad.show.report.reproduction import reproduction
 from ptmcad.show.table import NOT_COMPUTED, area_digits, areas_are_known, stability_in_words
 from ptmcad.show.units import area_unit, unit, with_unit
@@ -129,10 +129,10 @@ def answer(result: RegionMap) -> str:
     )
 
 
-def legend(result: RegionMap, chart: MapPictures) -> str:
+def legend(result: RegionMap, thin_walls: bool, hidden: int) -> str:
     """What colours and lines mean, in words."""
     parts = []
-    for entry in [*entries(result, chart.thin_walls), *hidden_entries(chart.hidden)]:
+    for entry in [*entries(result, thin_walls), *hidden_entries(hidden)]:
         match entry.mark:
             case Fill() as fill:
                 head, rest = (

@@ -45,7 +45,6 @@ from ptmcad.show.report.mapsvg import (
     pattern_defs,
     region_labels,
     region_outlines,
-    room,
     wall_lines,
 )
 from ptmcad.show.report.reproduction import reproduction
@@ -277,7 +276,8 @@ def _map_view(result: RegionMap, *, fine: bool, framed: bool) -> dict[str, Any]:
         else outline(result, None, TOLERANCE if fine else COARSE)
     )
     slice, certified = result.slice, result.cover is not None
-    known, around = fine or certified, room(seen, detail=False) if framed else None
+    known = fine or certified
+    around = zip(("view", "place", "svg"), frame(seen, detail=False), strict=True)
     fills = [fill_of(region, slice.count) for region in result.regions]
     drawn, lines = dict(region_outlines(seen, known)), wall_lines(seen, known)
     return {
@@ -302,8 +302,7 @@ def _map_view(result: RegionMap, *, fine: bool, framed: bool) -> dict[str, Any]:
             for number, x, y in region_labels(seen)
         ],
         "patterns": pattern_defs(fills),
-        "frame": around
-        and {"svg": "".join(frame(seen, around)), "view": around.view, "place": around.place},
+        "frame": dict(around) if framed else None,
         "certified": certified,
         "undetermined": approximate_text(100 * result.undetermined) if certified else "",
         "settled": result.status is not Status.PARTIAL,
