@@ -14,7 +14,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ptmcad.cover.rectangles import MAX_STEPS, Cover, Window
-from ptmcad.cover.subdivision import Integers, rectangle_array
+from ptmcad.cover.subdivision import (
+    COVERED,
+    Integers,
+    Subdivision,
+    rectangle_array,
+    subdivide,
+)
 
 Floats = NDArray[np.float64]
 _ERROR = 2.0**-50
@@ -105,7 +111,7 @@ def _exactly(value: float, low: Fraction, width: Fraction, steps: int) -> int:
 
 def combined(cover: Cover) -> Cover:
     """A cover of the same points by at most as many rectangles, found at small cost."""
-    return cover_of(_fewer(rectangle_array(cover)), cover.steps)
+    return cover_of(_merged(_outermost(_merged(rectangle_array(cover)))), cover.steps)
 
 
 def gathered(cover: Cover, most: int) -> Cover:
@@ -114,48 +120,29 @@ def gathered(cover: Cover, most: int) -> Cover:
 
     The grid is the finest that needs no more of them; a cover of no more rectangles stays as it is.
     """
-    array = rectangle_array(cover)
-    if len(array) <= most:
-        return cover_of(array, cover.steps)
-    result = array
-    for shift in reversed(range(cover.steps.bit_length())):
-        boxes = _in_squares(array, shift, most)
-        if boxes is None:
+    array, steps = rectangle_array(cover), cover.steps
+    found, across = array, 1
+    tree = subdivide(array, steps)
+    while len(array) > most and across <= steps:
+        boxes = _in_squares(tree, across)
+        if len(boxes) > most:
             break
-        result = boxes
-    return cover_of(result, cover.steps)
+        found, across = boxes, 2 * across
+    return cover_of(found, steps)
 
 
-def _in_squares(array: Integers, shift: int, most: int) -> Integers | None:
-    """Boxes around the parts of rectangles in squares of 2^shift steps; None if they are more than
-    ``most``.
-    """
-    first, last = array[:, (0, 2)] >> shift, (array[:, (1, 3)] - 1) >> shift
-    spans = last - first + 1
-    if int(spans.prod(axis=1).max()) > most:
-        return None
-    found = []
-    for i in range(int(spans[:, 0].max())):
-        for j in range(int(spans[:, 1].max())):
-            there = (spans[:, 0] > i) & (spans[:, 1] > j)
-            square = first[there] + (i, j)
-            low = np.maximum(array[there][:, (0, 2)], square << shift)
-            high = np.minimum(array[there][:, (1, 3)], (square + 1) << shift)
-            found.append(np.concatenate([square, low, high], axis=1))
-    parts = np.concatenate(found)
-    parts = parts[np.lexsort((parts[:, 1], parts[:, 0]))]
-    starts = np.flatnonzero(np.concatenate([[True], (parts[1:, :2] != parts[:-1, :2]).any(axis=1)]))
-    if len(starts) > most:
-        return None
-    low, high = (
-        np.minimum.reduceat(parts[:, 2:4], starts),
-        np.maximum.reduceat(parts[:, 4:6], starts),
-    )
-    return np.stack([low[:, 0], high[:, 0], low[:, 1], high[:, 1]], axis=1)
-
-
-def _fewer(array: Integers) -> Integers:
-    return _merged(_outermost(_merged(array)))
+def _in_squares(tree: Subdivision, across: int) -> Integers:
+    """Boxes around what is covered in each square of a grid of so many squares along each axis."""
+    size = tree.steps // across
+    x, y = size * np.indices((across, across)).reshape(2, -1)
+    squares = np.stack([x, x + size, y, y + size], axis=1)
+    square, leaf = tree.meeting(squares)
+    held = tree.state[leaf] == COVERED
+    square, bounds = square[held], tree.bounds[leaf[held]]
+    boxes = np.tile([tree.steps, 0, tree.steps, 0], (len(squares), 1))
+    for k, (inner, outer) in enumerate(((np.maximum, np.minimum), (np.minimum, np.maximum)) * 2):
+        outer.at(boxes[:, k], square, inner(bounds[:, k], squares[square, k]))
+    return boxes[boxes[:, 1] > 0]
 
 
 def _outermost(array: Integers) -> Integers:

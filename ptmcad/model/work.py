@@ -30,32 +30,12 @@ _Factors = dict[str, int]
 _ITSELF: _Factors = {"": 1}
 
 
-class Split(NamedTuple):
-    """The moments of a mechanism.
-
-    Attributes
-    ----------
-    steady : their parts without unknowns.
-    energies : less what the other parts of the moments do, to be added to the energy of springs and
-        loads.
-    coupled : all of them as they are written where one depends on another unknown than its own;
-        then alone.
-    """
-
-    steady: tuple[Moment, ...]
-    energies: tuple[Tree, ...]
-    coupled: tuple[Moment, ...] = ()
-
-    @property
-    def beside(self) -> tuple[Moment, ...]:
-        """The moments that act in addition to all energies."""
-        return self.steady + self.coupled
-
-
 @lru_cache(maxsize=8)
-def split_moments(mechanism: Model) -> Split:
-    """The constant parts of the moments, and the energies of which the rest are slopes; a system
-    has none of these.
+def split_moments(mechanism: Model) -> tuple[tuple[Moment, ...], tuple[Tree, ...]]:
+    """The moments that act besides all energies, and the energies of which the rest are slopes.
+
+    The moments are the constant parts; all of them, as they are written, where one depends on
+    another unknown than its own. A system has none of either.
 
     Raises
     ------
@@ -63,7 +43,7 @@ def split_moments(mechanism: Model) -> Split:
         When a moment that depends on its unknown is too large to be multiplied out.
     """
     if mechanism.coupled:
-        return Split((), (), tuple(Moment(*each) for each in mechanism.work.items()))
+        return tuple(Moment(*each) for each in mechanism.work.items()), ()
     steady, energies = [], []
     for unknown, moment in mechanism.work.items():
         if unknown not in names_of(moment):
@@ -74,7 +54,7 @@ def split_moments(mechanism: Model) -> Split:
             steady.append(Moment(unknown, tree_of(constant, mechanism.angles)))
         if energy.terms:
             energies.append(tree_of(energy, mechanism.angles))
-    return Split(tuple(steady), tuple(energies))
+    return tuple(steady), tuple(energies)
 
 
 def acting(model: Model, unknowns: Iterable[str]) -> str:
@@ -111,7 +91,7 @@ def moments_at(model: Model, parameters: Numbers) -> dict[str, Fraction]:
         When a moment depends on another unknown.
     """
     known = dict.fromkeys(model.free_lengths, Fraction(0)) | dict(parameters)
-    found = {unknown: value_at(tree, known) for unknown, tree in split_moments(model).beside}
+    found = {unknown: value_at(tree, known) for unknown, tree in split_moments(model)[0]}
     return {unknown: value for unknown, value in found.items() if value}
 
 
