@@ -19,8 +19,7 @@ from functools import cached_property, lru_cache
 from operator import sub
 from typing import TypeVar
 
-from ptmcad.formulas.evaluation import Substitution, values
-from ptmcad.formulas.evaluation import evaluated as with_values
+from ptmcad.formulas.evaluation import values
 from ptmcad.formulas.graph import Formula, Graph, gradient
 from ptmcad.model import closedloops as loops
 from ptmcad.model import crossed
@@ -249,27 +248,11 @@ def compiled_with(model: Model, variables: Mapping[str, Formula]) -> CompiledSys
     if mechanism is model:
         return _of_slopes(known)
     if mechanism.xjoints:
-        found = _of_followers(known, model, variables)
+        found = crossed.conditions(mechanism, variables)
     else:
         found = _of_loops(known, mechanism, ring)
     inequalities = known.inequalities + found.inequalities
     return replace(known, **found._replace(inequalities=inequalities)._asdict())
-
-
-def _of_followers(
-    known: CompiledSystem, model: Model, variables: Mapping[str, Formula]
-) -> loops.EquilibriumConditions:
-    """What holds in the unknowns alone. It is multiplied out in names, which variables have in
-    their own places.
-    """
-    if any(formula is not known.graph.variable(k) for k, formula in enumerate(variables.values())):
-        own = compiled(model)
-        places = {k: variables[name] for k, name in enumerate(own.names)}
-        found = own.equations, own.stability, (), own.inequalities[len(known.inequalities) :]
-        return loops.EquilibriumConditions(*with_values(found, Substitution(known.graph, places)))
-    assert known.smooth is not None
-    moments = dict(zip(model.sorted_unknowns, known.moments, strict=True))
-    return crossed.conditions(known.smooth, known.followers, moments, variables)
 
 
 def _with_mechanism(
@@ -294,15 +277,15 @@ def _with_mechanism(
     others += evaluated(energies, ring)
     steady = dict.fromkeys(mechanism.unknowns, ring.constant(Fraction(0)))
     steady |= {moment.unknown: evaluate(moment.value, ring) for moment in moments}
-    followers = []
-    for joint in mechanism.xjoints:
-        bars, base = evaluated((joint.bars, joint.length), ring)
-        turned_by = crossed.second_bar(bars, base, ring.cos(joint.angle), ring.sin(joint.angle))
-        first, second = (ring.values[angle].variable for angle in (joint.angle, joint.other))
-        followers.append(Follower(first, second, *turned_by))
+    followers = tuple(
+        crossed.follower(
+            joint, ring, *(ring.values[angle].variable for angle in (joint.angle, joint.other))
+        )
+        for joint in mechanism.xjoints
+    )
     known = replace(
         known,
-        followers=tuple(followers),
+        followers=followers,
         points=points,
         springs=springs,
         torsion=tuple(torsion),
