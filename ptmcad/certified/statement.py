@@ -122,6 +122,6 @@ def _left_out(slice: Slice, without: frozenset[str]) -> tuple[PlanStep, ...]:
         ]
     except PtmcadError:
         return (variety,)  # the engine says why
-    made = frozenset[str].intersection(*(each.made for each in found))
-    kept = frozenset[str].union(*(each.kept for each in found))
+    made = frozenset[str].intersection(*(made for made, _, _ in found))
+    kept = frozenset[str].union(*(kept for _, kept, _ in found))
     return (variety, *(saving_step(name, without) for name in BY_NAME if name in made | kept))

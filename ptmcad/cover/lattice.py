@@ -189,35 +189,26 @@ def _merged(array: Integers) -> Integers:
     """Rectangles of which none share two ends along one axis and meet along the other; the union
     stays.
     """
-    while True:
+    before, other = len(array) + 1, [2, 3, 0, 1]
+    while 0 < len(array) < before:
         before = len(array)
-        for fixed, moving in (((2, 3), (0, 1)), ((0, 1), (2, 3))):
-            array = _merged_along(array, fixed, moving)
-        if len(array) == before:
-            return array
+        array = _merged_along(_merged_along(array[:, other]))[:, other]
+    return array
 
 
-def _merged_along(array: Integers, fixed: tuple[int, int], moving: tuple[int, int]) -> Integers:
-    """Rectangles with equal ends in the fixed columns joined where they overlap or touch in the
-    moving ones.
+def _merged_along(array: Integers) -> Integers:
+    """Rectangles with equal ends in the first two columns joined where they overlap or touch in the
+    others, which come first then.
     """
-    if not len(array):
-        return array
-    array = array[
-        np.lexsort(
-            (array[:, moving[1]], array[:, moving[0]], array[:, fixed[1]], array[:, fixed[0]])
-        )
-    ]
-    rows = (array[1:, fixed[0]] != array[:-1, fixed[0]]) | (
-        array[1:, fixed[1]] != array[:-1, fixed[1]]
-    )
+    array = array[np.lexsort(array.T[::-1])]
+    rows = (array[1:, :2] != array[:-1, :2]).any(axis=1)
     group = np.concatenate([[0], np.cumsum(rows)])
     # the farthest end so far within the group: groups are lifted above each other, so that one
     # running maximum does
-    ends, ranks = np.unique(array[:, moving[1]], return_inverse=True)
+    ends, ranks = np.unique(array[:, 3], return_inverse=True)
     farthest = ends[np.maximum.accumulate(ranks + group * len(ends)) - group * len(ends)]
-    fresh = np.concatenate([[True], rows | (array[1:, moving[0]] > farthest[:-1])])
+    fresh = np.concatenate([[True], rows | (array[1:, 2] > farthest[:-1])])
     starts = np.flatnonzero(fresh)
     joined = array[starts]
-    joined[:, moving[1]] = np.maximum.reduceat(array[:, moving[1]], starts)
-    return joined
+    joined[:, 3] = np.maximum.reduceat(array[:, 3], starts)
+    return joined[:, [2, 3, 0, 1]]

@@ -251,8 +251,14 @@ def compiled_with(model: Model, variables: Mapping[str, Formula]) -> CompiledSys
         found = crossed.conditions(mechanism, variables)
     else:
         found = _of_loops(known, mechanism, ring)
-    inequalities = known.inequalities + found.inequalities
-    return replace(known, **found._replace(inequalities=inequalities)._asdict())
+    equations, stability, tangent, further = found
+    return replace(
+        known,
+        equations=equations,
+        stability=stability,
+        tangent=tangent,
+        inequalities=known.inequalities + further,
+    )
 
 
 def _with_mechanism(
@@ -323,7 +329,7 @@ def _of_slopes(known: CompiledSystem) -> CompiledSystem:
 
 def _of_loops(
     known: CompiledSystem, mechanism: Mechanism, ring: Assignment[Formula]
-) -> loops.EquilibriumConditions:
+) -> loops.Conditions:
     """Solutions are where loops are closed and balanced."""
     closing = []
     for bar in mechanism.closing:

@@ -26,7 +26,7 @@ from typing import Any, Generic, NamedTuple, TypeVar
 from ptmcad.errors import ExpressionError
 from ptmcad.formulas.graph import Formula, determinant
 from ptmcad.model.antiparallelogram import XJoint
-from ptmcad.model.closedloops import EquilibriumConditions
+from ptmcad.model.closedloops import Conditions
 from ptmcad.model.description import Mechanism
 from ptmcad.model.evaluate import Named, Ring, evaluate, evaluated
 from ptmcad.model.identities import Polynomial, PolynomialRing
@@ -75,12 +75,12 @@ def second_bar(bars: Any, length: Any, cosine: Any, sine: Any) -> tuple[Any, Any
 
 def follower(joint: XJoint, ring: Ring[Any], leader: V, variable: V) -> Follower[V, Any]:
     """The second bar's angle in a ring."""
-    lengths = evaluated((joint.bars, joint.length), ring)
-    turned = second_bar(*lengths, ring.cos(joint.angle), ring.sin(joint.angle))
+    bars, length = evaluated((joint.bars, joint.length), ring)
+    turned = second_bar(bars, length, ring.cos(joint.angle), ring.sin(joint.angle))
     return Follower(leader, variable, *turned)
 
 
-def conditions(mechanism: Mechanism, variables: Mapping[str, Formula]) -> EquilibriumConditions:
+def conditions(mechanism: Mechanism, variables: Mapping[str, Formula]) -> Conditions:
     """What holds at equilibria in the unknowns alone, multiplied out: the equations are the e_i.
 
     Parameters
@@ -107,10 +107,11 @@ def conditions(mechanism: Mechanism, variables: Mapping[str, Formula]) -> Equili
     if sum(len(e.terms) for e in equations) > MAX_TERMS or most > MAX_MINOR:
         raise ExpressionError(f"{TOO_LARGE}; numbers for lengths make it smaller")
     hessian = [tuple(_formula(entry, variables) for entry in row) for row in rows]
-    return EquilibriumConditions(
+    return (
         tuple(_formula(e, variables) for e in equations),
         tuple(determinant([row[:k] for row in hessian[:k]]) for k in range(1, len(hessian) + 1)),
-        inequalities=tuple(_formula(b.below, variables) for b in bars) if len(bars) > 1 else (),
+        (),
+        tuple(_formula(b.below, variables) for b in bars if len(bars) > 1),
     )
 
 

@@ -9,9 +9,8 @@ ring needs those of single angles only. Division is by constants only: a coordin
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
-from dataclasses import dataclass
 from fractions import Fraction
-from typing import Any, Generic, Protocol, TypeVar
+from typing import Any, Generic, NamedTuple, Protocol, TypeVar
 
 from ptmcad.errors import ExpressionError
 from ptmcad.text.syntax import NOT_INTEGER
@@ -60,8 +59,7 @@ class Ring(Protocol[_E_co]):
     def sin(self, angle: str, /) -> _E_co: ...
 
 
-@dataclass(frozen=True, slots=True)
-class ByNames(Generic[E]):
+class ByNames(NamedTuple, Generic[E]):
     """A ring as an arithmetic for formulas, whose variables have these names."""
 
     names: Sequence[str]

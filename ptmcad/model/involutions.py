@@ -20,7 +20,6 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from fractions import Fraction
 from itertools import permutations
 from typing import NamedTuple
@@ -56,8 +55,7 @@ _KeptPolynomial = tuple[_Terms, Sequence[_Terms], bool]
 that may be."""
 
 
-@dataclass(frozen=True, slots=True)
-class Involution:
+class Involution(NamedTuple):
     """What becomes of unknowns and axes, by number: q'_k = signs_k q_images(k) + halves_k pi.
 
     Attributes

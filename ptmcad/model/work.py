@@ -14,10 +14,9 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Sequence
 from fractions import Fraction
 from functools import lru_cache
-from typing import NamedTuple
 
 from ptmcad.model.description import Mechanism, Model
-from ptmcad.model.elements import Moment
+from ptmcad.model.elements import Load, Moment
 from ptmcad.model.evaluate import evaluate, value_at
 from ptmcad.model.identities import Monomial, Polynomial, PolynomialRing
 from ptmcad.model.trees import product, total
@@ -95,22 +94,17 @@ def moments_at(model: Model, parameters: Numbers) -> dict[str, Fraction]:
     return {unknown: value for unknown, value in found.items() if value}
 
 
-class PointForce(NamedTuple):
-    """A load where the parameters have values: its point, and its components across and up by their
-    names.
+LoadsAt = tuple[tuple[Load, tuple[Fraction, Fraction]], ...]
+"""Loads with their components across and up."""
+
+
+def loads_at(mechanism: Mechanism, parameters: Numbers) -> LoadsAt:
+    """The loads in the description's order where the parameters have values; variables that are not
+    among these are zero.
     """
-
-    point: str
-    names: tuple[str, str]
-    force: tuple[Fraction, Fraction]
-
-
-def loads_at(mechanism: Mechanism, parameters: Numbers) -> tuple[PointForce, ...]:
-    """The loads in the description's order; variables that are not among the parameters are zero."""
     known = dict.fromkeys(mechanism.variables, Fraction(0)) | dict(parameters)
     return tuple(
-        PointForce(load.point, load.names, (value_at(load.x, known), value_at(load.y, known)))
-        for load in mechanism.loads
+        (load, (value_at(load.x, known), value_at(load.y, known))) for load in mechanism.loads
     )
 
 

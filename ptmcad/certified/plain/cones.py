@@ -18,7 +18,7 @@ from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 from ptmcad.certified.plain.divisors import over
-from ptmcad.certified.plain.harmonics import TrigonometricPolynomial, Unknown
+from ptmcad.certified.plain.harmonics import TrigonometricPolynomial, Unknown, mapped
 from ptmcad.certified.plain.problem import SpringCone
 from ptmcad.formulas.graph import (
     Formula,
@@ -136,7 +136,7 @@ class ConeShape:
         """
 
         def written(part: Any) -> Any:
-            return tuple(map(written, part)) if isinstance(part, tuple) else part.formula(unknowns)
+            return mapped(part, lambda f: f.formula(unknowns))
 
         dx, dy = written(self.difference)
         ux, uy = (direction(dx, dy), direction(dy, dx)) if phi is None else (phi.cos(), phi.sin())

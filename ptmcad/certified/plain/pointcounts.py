@@ -152,9 +152,8 @@ class PlainCounter:
         cones = 0 if smooth else None
         if self.slice.model == ptm() and self.problem.has_springs:
             absent = dict.fromkeys(self.slice.model.variables, Fraction(0))
-            there = peaks(absent | values_at(self.slice.parameters, x, y))
-            cones = there.count
-            if there.regular and index[0] - index[1] + index[2] + cones:
+            cones, is_regular = peaks(absent | values_at(self.slice.parameters, x, y))
+            if is_regular and index[0] - index[1] + index[2] + cones:
                 raise ArithmeticError(
                     f"minima, saddles and maxima {[*index]} with {cones} cones at ({x}, {y})"
                 )
@@ -322,8 +321,7 @@ def _sum(parts: Sequence[PointCount]) -> PointCount:
     """Of decided counts of solutions that are all different."""
 
     def added(numbers: Sequence[int | None]) -> int | None:
-        known = [n for n in numbers if n is not None]
-        return sum(known) if len(known) == len(numbers) else None
+        return None if None in numbers else sum(n for n in numbers if n is not None)
 
     indices = [p.index for p in parts if p.index is not None]
     return PointCount(
