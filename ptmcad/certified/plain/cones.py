@@ -15,7 +15,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 from ptmcad.certified.plain.divisors import over
 from ptmcad.certified.plain.harmonics import TrigonometricPolynomial, Unknown, mapped
@@ -135,12 +135,10 @@ class ConeShape:
         phi : the angle of the spring's direction, where that is a variable of its own.
         """
 
-        def written(part: Any) -> Any:
-            return mapped(part, lambda f: f.formula(unknowns))
-
-        dx, dy = written(self.difference)
+        vectors = self.difference, self.weights, self.slopes, self.bends
+        numbers = self.levers, self.squares, self.crosses
+        (dx, dy), weights, slopes, bends = mapped(vectors, lambda f: f.formula(unknowns))
         ux, uy = (direction(dx, dy), direction(dy, dx)) if phi is None else (phi.cos(), phi.sin())
-        vectors = written(self.weights)
         return ConeFormulas(
             expression_formula(graph, self.pull),
             (dx, dy),
@@ -148,11 +146,11 @@ class ConeShape:
             length(dx, dy) if phi is None else dx * ux + dy * uy,
             inverse_length(dx, dy),
             tuple(i for i, (a, b) in enumerate(self.weights) if a.terms or b.terms),
-            tuple(ux * a + uy * b for a, b in vectors),
-            tuple(ux * b - uy * a for a, b in vectors),
-            tuple(ux * b - uy * a for a, b in written(self.slopes)),
-            tuple(tuple(ux * a + uy * b for a, b in row) for row in written(self.bends)),
-            *map(written, (self.levers, self.squares, self.crosses)),
+            tuple(ux * a + uy * b for a, b in weights),
+            tuple(ux * b - uy * a for a, b in weights),
+            tuple(ux * b - uy * a for a, b in slopes),
+            tuple(tuple(ux * a + uy * b for a, b in row) for row in bends),
+            *mapped(numbers, lambda f: f.formula(unknowns)),
         )
 
 
