@@ -20,7 +20,7 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 from itertools import product
 
-from ptmcad.certified.plain.cones import ConeShape, Pair, shape
+from ptmcad.certified.plain.cones import Pair, Writer, writer
 from ptmcad.certified.plain.divisors import common_factor, divided, largest_factor, over
 from ptmcad.certified.plain.harmonics import TrigonometricPolynomial
 from ptmcad.certified.plain.problem import Problem, Push, SpringCone
@@ -36,7 +36,7 @@ class FactoredProblem:
     ----------
     factors : of the equations, positive in the open window.
     equations : the smooth parts over their factors.
-    shapes : of the springs with a free length.
+    springs : what writes those with a free length.
     turns : directions in which bodies turn together; none are used of closed loops, and where
         springs are pushes.
     pushes : of the problem, with their weights over the factors.
@@ -45,7 +45,7 @@ class FactoredProblem:
     problem: Problem
     factors: tuple[Expression, ...]
     equations: tuple[TrigonometricPolynomial, ...]
-    shapes: tuple[ConeShape, ...]
+    springs: tuple[Writer, ...]
     turns: tuple[Turn, ...]
     pushes: tuple[Push, ...]
 
@@ -68,7 +68,7 @@ def geometry(problem: Problem, axes: tuple[Axis, Axis] | None = None) -> Factore
         problem,
         factors,
         equations,
-        tuple(shape(cone, factors) for cone in problem.cones),
+        tuple(writer(cone, factors) for cone in problem.cones),
         found,
         tuple(
             replace(
