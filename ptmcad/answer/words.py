@@ -138,7 +138,7 @@ def moments_work(model: Model, unknowns: Collection[str]) -> str:
         return ""
     what, several = acting(model, unknowns), len(unknowns) > 1
     mechanism = model.drawable
-    if mechanism is not None and split_moments(mechanism).energies:
+    if mechanism is not None and split_moments(mechanism)[1]:
         return f"work of the constant part{'s' * several} of the {what}"
     if not set(unknowns) <= set(model.angles):
         return f"work of the {what}"

@@ -23,11 +23,11 @@ from ptmcad.certified.contraction import (
     linearise,
     precondition,
     row_coefficient,
-    row_constant,
+    row_rest,
     workspace,
 )
 from ptmcad.certified.equationsystem import Arguments
-from ptmcad.formulas.compilation import compiled, inlined
+from ptmcad.formulas.compilation import ONE, ZERO, compiled, inlined
 from ptmcad.formulas.intervalarithmetic import Floats
 from ptmcad.formulas.rounding import down, multiply, reciprocal, up
 
@@ -93,19 +93,10 @@ def _solved(
     thinnest: float,
 ) -> float:
     """Row i as a strip, if that is thinner than the thinnest so far; its thickness."""
-    unknowns, middle, radius = system.unknowns, work.middle_low, work.radius
-    c_low, c_high = row_constant(i, system.equations, work)
-    a_low = a_high = b_low = b_high = 0.0
-    for j in range(len(unknowns)):
-        u, v = row_coefficient(i, j, work)
-        if j == 0:
-            a_low, a_high = u, v
-        elif j == 1:
-            b_low, b_high = u, v
-        else:
-            x = unknowns[j]
-            u, v = multiply(u, v, down(low[x] - middle[x]), up(high[x] - middle[x]))
-            c_low, c_high = down(c_low + u), up(c_high + v)
+    middle, radius = work.middle_low, work.radius
+    c_low, c_high = row_rest(i, (ZERO, ONE), system, low, high, work)
+    a_low, a_high = row_coefficient(i, ZERO, work)
+    b_low, b_high = row_coefficient(i, ONE, work)
     dependent = 1
     if abs(a_low + a_high) * radius[0] > abs(b_low + b_high) * radius[1]:
         dependent = 0

@@ -46,26 +46,6 @@ NEVER = -1.0
 MAX_BOXES = 2**62
 
 
-class SearchLimits(NamedTuple):
-    """Where a search stops.
-
-    Attributes
-    ----------
-    area : boxes whose projection to variables 0 and 1 has at most this area are not bisected
-        further.
-    width : nor are those that are at most this wide; widths count by their weights.
-    proof_width : boxes at most this wide are tried for a proof that they hold exactly one zero.
-    budget : number of boxes after which the search stops.
-    allowed : number of boxes that may stay open; the search stops beyond.
-    """
-
-    area: float
-    width: float
-    proof_width: float
-    budget: int
-    allowed: int
-
-
 class SearchResult(NamedTuple):
     """What a search leaves.
 
@@ -96,11 +76,12 @@ def search_curve(
 
     Parameters
     ----------
-    area, budget : see `SearchLimits`.
+    area : boxes whose projection has at most this area are not bisected further.
+    budget : number of boxes after which the search stops.
     weights : shape (v,): the variable whose width times its weight is largest is bisected.
     """
     return branch_and_prune(
-        system, system, start, SearchLimits(area, NEVER, NEVER, budget, MAX_BOXES), weights
+        system, system, start, (area, NEVER, NEVER), (budget, MAX_BOXES), weights
     )
 
 
@@ -117,47 +98,56 @@ def isolate(
     ----------
     system : with what discards boxes that hold no solution looked for.
     equations : the same equations alone, for the proofs.
-    limits : the width, the budget and the number of allowed boxes; see `SearchLimits`.
+    limits : boxes at most this wide are not bisected further; the number of boxes after which the
+        search stops; and the number that may stay open, beyond which it does.
     weights : shape (v,), positive: of the variables' widths.
     """
     width, budget, allowed = limits
-    return branch_and_prune(
-        system,
-        equations,
-        start,
-        SearchLimits(NEVER, width, MAX_PROOF_WIDTH, budget, allowed),
-        weights,
-    )
+    sizes = NEVER, width, MAX_PROOF_WIDTH
+    return branch_and_prune(system, equations, start, sizes, (budget, allowed), weights)
 
 
 @compiled
 def branch_and_prune(
-    system: Arguments, equations: Arguments, start: Boxes, limits: SearchLimits, weights: Floats
+    system: Arguments,
+    equations: Arguments,
+    start: Boxes,
+    sizes: tuple[float, float, float],
+    numbers: tuple[int, int],
+    weights: Floats,
 ) -> SearchResult:
     """The one loop of both: it follows a curve, without proofs, where the limit of areas is
     positive, and isolates solutions otherwise.
 
     Boxes of curves are contracted by affine forms where these have room for all unknowns; others
     by derivatives.
+
+    Parameters
+    ----------
+    sizes : the area of a projection, and the width by weights, at which boxes are not bisected
+        further; and the width at which they are tried for a proof that they hold exactly one zero.
+    numbers : of boxes that are treated, and of those that may stay open, before the search stops.
     """
+    least_area, least_width, proof_width = sizes
+    budget, allowed = numbers
     variables = start.shape[1] // 2
     larger = (
         system if len(system.program.operations) > len(equations.program.operations) else equations
     )
     work = workspace(larger, variables)
-    linear = limits.area > 0 and len(system.unknowns) <= LANES
+    linear = least_area > 0 and len(system.unknowns) <= LANES
     space = space_for(system, variables)
     stack, small = start.copy(), np.empty((64, 2 * variables))
     unique, narrow = np.empty((4, 2 * variables)), np.empty((4, 2 * variables))
     top = start.shape[0]
     proved = finished = used = ZERO
     longest, flat = inf, 0.0
-    if limits.area > 0:
-        longest = MAX_SLIVER_RATIO * sqrt(limits.area * weights[0] * weights[1])
-        flat = limits.area if len(system.solved) > 0 else FLAT * limits.area
+    if least_area > 0:
+        longest = MAX_SLIVER_RATIO * sqrt(least_area * weights[0] * weights[1])
+        flat = least_area if len(system.solved) > 0 else FLAT * least_area
     box = np.empty(2 * variables)
     low, high = box[:variables], box[variables:]
-    while top > 0 and used < limits.budget and finished <= limits.allowed:
+    while top > 0 and used < budget and finished <= allowed:
         top -= 1
         used += 1
         for k in range(len(box)):
@@ -170,7 +160,7 @@ def branch_and_prune(
         if not kept:
             continue
         widest, width = widest_of(system, box, weights, work, SOLVED_WEIGHT)
-        if width <= limits.proof_width:
+        if width <= proof_width:
             wide = inflated(equations, box, weights, work)
             if len(wide) > 0:
                 unique = _with(unique, proved, wide)
@@ -183,8 +173,8 @@ def branch_and_prune(
         area = (high[0] - low[0]) * (high[1] - low[1])
         if (
             widest < 0
-            or width <= limits.width
-            or (area <= limits.area and (area > flat or width <= longest))
+            or width <= least_width
+            or (area <= least_area and (area > flat or width <= longest))
         ):
             small = _with(small, finished, box)
             finished += 1

@@ -282,6 +282,29 @@ def row_coefficient(i: int, j: int, work: Workspace) -> tuple[float, float]:
     return u, v
 
 
+@compiled
+def row_rest(
+    i: int,
+    kept: tuple[int, int],
+    system: Arguments,
+    box_low: Floats,
+    box_high: Floats,
+    work: Workspace,
+) -> tuple[float, float]:
+    """Row i of the preconditioned linear equations over the box, without the terms of two columns,
+    which may be the same one.
+    """
+    unknowns, middle = system.unknowns, work.middle_low
+    c_low, c_high = row_constant(i, system.equations, work)
+    for j in range(len(unknowns)):
+        if j not in kept:
+            u, v = row_coefficient(i, j, work)
+            x = unknowns[j]
+            u, v = multiply(u, v, down(box_low[x] - middle[x]), up(box_high[x] - middle[x]))
+            c_low, c_high = down(c_low + u), up(c_high + v)
+    return c_low, c_high
+
+
 @inlined
 def solve_row(
     system: Arguments, i: int, pivot: int, box_low: Floats, box_high: Floats, work: Workspace
@@ -289,18 +312,9 @@ def solve_row(
     """Row i of the preconditioned linear equations, solved for its pivot: -1 no solution, 1 much
     narrower, 0 else.
     """
-    unknowns, equations = system.unknowns, system.equations
-    middle_low, radius = work.middle_low, work.radius
-    c_low, c_high = row_constant(i, equations, work)
-    p_low = p_high = 1.0
-    for j in range(len(unknowns)):
-        u, v = row_coefficient(i, j, work)
-        if j == pivot:
-            p_low, p_high = u, v
-            continue
-        x = unknowns[j]
-        u, v = multiply(u, v, down(box_low[x] - middle_low[x]), up(box_high[x] - middle_low[x]))
-        c_low, c_high = down(c_low + u), up(c_high + v)
+    unknowns, middle_low, radius = system.unknowns, work.middle_low, work.radius
+    c_low, c_high = row_rest(i, (pivot, pivot), system, box_low, box_high, work)
+    p_low, p_high = row_coefficient(i, pivot, work)
     # c + p (x - middle) = 0 for the pivot's unknown x
     if not (p_low > 0 or p_high < 0):
         reach = up(magnitude(p_low, p_high) * radius[pivot])

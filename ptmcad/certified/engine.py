@@ -29,7 +29,7 @@ from ptmcad.certified.covering import (
     thinning,
 )
 from ptmcad.certified.loading import load
-from ptmcad.certified.pace import PARTS, SAFETY, Pace, SearchProgress
+from ptmcad.certified.pace import PARTS, SAFETY, Pace, parts_done
 from ptmcad.certified.plain.criticalcurves import curves
 from ptmcad.certified.plain.mirrors import halving
 from ptmcad.certified.plain.pointcounts import plain_counter
@@ -117,7 +117,8 @@ class _MapSearch:
         load(options.progress)
         self.pace = Pace(options.deadline)
         self.clock = self.pace.clock
-        self.search_progress = SearchProgress(float(options.tolerance or TOLERANCE))
+        self.reached = 0
+        """Of `PARTS`, by the progress that was reported."""
         self.slice, self.options = slice, options
         self.tolerance = options.tolerance or TOLERANCE
         self.jobs = options.jobs or os.cpu_count() or 1
@@ -219,9 +220,8 @@ class _MapSearch:
         enclosed : the boxes' share of the window.
         """
         allowed = self.tolerance
-        if (
-            enclosed** 2 > STRIP_TRIAL_RATIO * allowed
-            or self.pace.left() < SAFETY * self.pace.thin.of(self.boxes())
+        if enclosed**2 > STRIP_TRIAL_RATIO * allowed or self.pace.left() < SAFETY * self.pace.cost(
+            self.boxes(), "strips"
         ):
             return None
         start = self.clock()
@@ -277,12 +277,12 @@ class _MapSearch:
             timings=times,
         )
         self.seconds["regions"] += self.clock() - start
-        self.pace.map.record(boxes, self.clock() - start)
+        self.pace.record("map", boxes, self.clock() - start)
         return result
 
     def _must_hand_over(self) -> bool:
         """Whether there is only time left to put a map into other hands."""
-        return self.pace.left() < SAFETY * self.pace.text.of(self.boxes())
+        return self.pace.left() < SAFETY * self.pace.cost(self.boxes(), "text")
 
     def _box_cover(self) -> Cover:
         return combined(self.lattice.cover(box_rectangles(self.enclosures)))
@@ -291,25 +291,21 @@ class _MapSearch:
         if self._thinned is None:
             start, boxes = self.clock(), self.boxes()
             self._thinned = thinning(self.enclosures, self.lattice, self.jobs)
-            self.pace.thin.record(boxes, self.clock() - start)
+            self.pace.record("strips", boxes, self.clock() - start)
         return self._thinned
 
     def _affordable(self, cover: Cover) -> bool:
         """Whether there is the time to make a map of the cover, as far as one can foresee."""
         pieces = max(self.boxes(), len(cover.rectangles))
-        return SAFETY * (self.pace.map.of(pieces) + self.pace.text.of(pieces)) < self.pace.left()
-
-    def _must_end(self, boxes: int) -> bool:
-        """Whether the search has to end for the last map of so many boxes; a process that is to
-        leave ends here.
-        """
-        leave_if_asked()
-        return self.pace.late(boxes)
+        return SAFETY * self.pace.cost(pieces, "map", "text") < self.pace.left()
 
     def _late(self) -> bool:
-        """Whether the search has to end for the last map; between its tasks maps are handed over."""
+        """Whether the search has to end for the last map; between its tasks maps are handed over. A
+        process that is to leave ends here.
+        """
         boxes = self.boxes()
-        if self._must_end(boxes):
+        leave_if_asked()
+        if self.pace.late(boxes):
             self._thinned = None
             return True
         if self.options.partial is not None and self.pace.due(boxes):
@@ -343,7 +339,7 @@ class _MapSearch:
             made = self.clock()
             self.options.partial(found)
             self.best = found
-            self.pace.text.record(self.boxes(), self.clock() - made)
+            self.pace.record("text", self.boxes(), self.clock() - made)
             if found.cover is not None:
                 self.uncounted = found.undetermined - share_of(found.cover)
         self.pace.spent += self.clock() - start
@@ -377,11 +373,9 @@ class _MapSearch:
         def report(treated: int, waiting: int) -> None:
             level = treated / max(treated + 8 * waiting, 1)  # most of those that wait are cut again
             share = self._kept(undetermined)
-            progress(
-                f"undetermined {percent(share)}",
-                self.search_progress.at(float(share), level),
-                PARTS,
-            )
+            done = parts_done(float(share), level, float(self.tolerance))
+            self.reached = max(self.reached, done)
+            progress(f"undetermined {percent(share)}", self.reached, PARTS)
 
         return report
 
@@ -405,7 +399,7 @@ class _MapSearch:
         undetermined : the share that the cover leaves, of boxes or of strips.
         """
         # half of the time there is: other programs may take the processors meanwhile
-        in_time = SAFETY * self.pace.map.of(self.boxes()) < LAST_SHARE * LAST_SECONDS / 2
+        in_time = SAFETY * self.pace.cost(self.boxes(), "map") < LAST_SHARE * LAST_SECONDS / 2
         return min(self._least(), undetermined + self.uncounted) if in_time else self._least()
 
 

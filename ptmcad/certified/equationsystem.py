@@ -97,7 +97,7 @@ def system(
     cheap, costly = vanishing
     first, rest = list(equations[:2]), list(equations[2:])
     tape = record([
-        [formula for quotient in solved for formula in (quotient.rest, quotient.slope)],
+        [formula for quotient in solved for formula in quotient[1:]],
         [*first, *cheap],
         rest,
         [*costly, *nonnegative],
@@ -112,17 +112,13 @@ def system(
         tape.outputs[3].reshape(len(equations), len(unknowns)),
         (tape.outputs[0], tape.outputs[1], tape.outputs[2][: len(costly)]),
         tape.outputs[2][len(costly) :],
-        np.column_stack([np.array([quotient.variable for quotient in solved], np.int64), places]),
+        np.column_stack([np.array([variable for variable, *_ in solved], np.int64), places]),
         solved_end,
     )
 
 
-class Quotient(NamedTuple):
-    """A variable that is -rest/slope at solutions, where the slope is not zero."""
-
-    variable: int
-    rest: Formula
-    slope: Formula
+Quotient = tuple[int, Formula, Formula]
+"""A variable that is -rest/slope at solutions, where the slope is not zero; the rest, the slope."""
 
 
 def quotients(vanishing: Iterable[Formula], axes: Iterable[int]) -> tuple[Quotient, ...]:
@@ -153,7 +149,7 @@ def _quotient(formula: Formula, axis: int) -> Iterator[Quotient]:
     if slope.value != 0 and not occurs(axis, slope):
         rest = _without(axis, formula)
         if rest is not None:
-            yield Quotient(axis, rest, slope)
+            yield axis, rest, slope
 
 
 def _without(variable: int, formula: Formula) -> Formula | None:

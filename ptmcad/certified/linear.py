@@ -39,8 +39,8 @@ MIN_SLOPE = 1e-100
 ROUNDS = 2
 
 
-class Rows(NamedTuple):
-    """Rows: the sum over j of slopes[i, j] e_j, plus centers[i], plus a number of at most
+class _Rows(NamedTuple):
+    """_Rows: the sum over j of slopes[i, j] e_j, plus centers[i], plus a number of at most
     errors[i], is zero; in the last rows, of formulas that are not negative, at least zero.
 
     Attributes
@@ -58,12 +58,8 @@ class Rows(NamedTuple):
     high: Floats
 
 
-class Linear(NamedTuple):
-    """Space that a search uses again for every box."""
-
-    forms: Floats
-    frame: AffineFrame
-    rows: Rows
+Linear = tuple[Floats, AffineFrame, _Rows]
+"""Forms, their frame, and rows: space that a search uses again for every box."""
 
 
 @compiled
@@ -71,18 +67,10 @@ def space_for(system: Arguments, variables: int) -> Linear:
     """For boxes of this system."""
     n = len(system.unknowns)
     m = len(system.cheap) + len(system.rest) + len(system.costly) + len(system.nonnegative)
-    return Linear(
-        np.zeros((len(system.program.operations) + 1, FIRST + LANES)),
-        frame_for(system.unknowns, variables),
-        Rows(
-            np.empty((m, n)),
-            np.empty(m),
-            np.empty(m),
-            np.empty(m, np.int64),
-            np.empty(n),
-            np.empty(n),
-        ),
-    )
+    forms = np.zeros((len(system.program.operations) + 1, FIRST + LANES))
+    pivots = np.empty(m, np.int64)
+    rows = _Rows(np.empty((m, n)), np.empty(m), np.empty(m), pivots, np.empty(n), np.empty(n))
+    return forms, frame_for(system.unknowns, variables), rows
 
 
 @compiled
@@ -122,7 +110,7 @@ def contract_linear(
 
 
 @compiled
-def _take(rows: Rows, count: int, places: Indices, forms: Floats) -> int:
+def _take(rows: _Rows, count: int, places: Indices, forms: Floats) -> int:
     """Append the forms of these nodes that have a bounded error; returns how many rows there are."""
     for place in places:
         if forms[place, ERROR] < LARGE:
@@ -135,7 +123,7 @@ def _take(rows: Rows, count: int, places: Indices, forms: Floats) -> int:
 
 
 @compiled
-def _eliminate(rows: Rows, equal: int, count: int) -> bool:
+def _eliminate(rows: _Rows, equal: int, count: int) -> bool:
     """Solve one more row for the unknown that it knows best, and put that into all others; False if
     none is left.
     """
@@ -169,7 +157,7 @@ def _eliminate(rows: Rows, equal: int, count: int) -> bool:
 
 
 @compiled
-def _bound(rows: Rows, i: int, nonnegative: bool) -> bool:
+def _bound(rows: _Rows, i: int, nonnegative: bool) -> bool:
     """What row i, zero or not negative, says of each unknown where the others are bounded; False if
     it cannot hold.
     """
@@ -203,7 +191,7 @@ def _bound(rows: Rows, i: int, nonnegative: bool) -> bool:
 
 @compiled
 def _shrink(
-    unknowns: Indices, box_low: Floats, box_high: Floats, frame: AffineFrame, rows: Rows
+    unknowns: Indices, box_low: Floats, box_high: Floats, frame: AffineFrame, rows: _Rows
 ) -> int:
     """Carry the bounds of each e_j over to the box; returns what `contract_linear` does."""
     result = 0

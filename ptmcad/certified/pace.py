@@ -3,8 +3,7 @@ made in time, and how far it has come.
 
 Guarantee: maps on the way take at most `MAP_TIME_SHARE` of the time and `ALLOWANCE` seconds, as far
 as the time of a map is foreseen; the search is asked to end while `SAFETY` times the time foreseen
-for the last map is left. The progress never falls, and reaches `PARTS` at no share above the
-tolerance.
+for the last map is left. The progress reaches `PARTS` at no share above the tolerance.
 
 Nothing here decides what is in a map: only when it is made.
 """
@@ -34,26 +33,10 @@ MIN_TIMED_BOXES = 4000
 """Of fewer boxes the time says nothing about what each of them takes."""
 
 
-@dataclass(slots=True)
-class Cost:
-    """The seconds that a kind of work on the boxes takes, from the last two times that it was done."""
-
-    each: float
-    """Seconds for a box, before anything is known."""
-    known: list[tuple[int, float]] = field(default_factory=list)
-
-    def record(self, boxes: int, seconds: float) -> None:
-        """The work on so many boxes took so many seconds."""
-        self.known = [*self.known[-1:], (boxes, seconds)]
-
-    def of(self, boxes: int) -> float:
-        """The seconds that the work on so many boxes will take: with more boxes more, with fewer no
-        less.
-        """
-        foreseen = (
-            seconds * max(1.0, boxes / max(known, MIN_TIMED_BOXES)) for known, seconds in self.known
-        )
-        return max(foreseen, default=self.each * boxes)
+RATES = {"strips": 1e-5, "map": 2e-5, "text": 5e-6}
+"""Seconds for a box, before anything is known: to find the strips, to make a map of their cover, and
+to hand that over.
+"""
 
 
 @dataclass(slots=True)
@@ -66,8 +49,6 @@ class Pace:
     work : reading of a clock that runs only while this process works: on a busy machine the other
         one runs ahead of it.
     started : reading of the clock at the start.
-    thin, map, text : what it takes to find the strips, to make a map of their cover, and to hand
-        that over.
     spent : seconds that maps on the way took.
     """
 
@@ -75,10 +56,8 @@ class Pace:
     clock: Callable[[], float] = perf_counter
     work: Callable[[], float] = process_time
     started: float = 0.0
-    thin: Cost = field(default_factory=lambda: Cost(1e-5))
-    map: Cost = field(default_factory=lambda: Cost(2e-5))
-    text: Cost = field(default_factory=lambda: Cost(5e-6))
     spent: float = 0.0
+    _known: dict[str, list[tuple[int, float]]] = field(default_factory=dict)
     _look_at: float = -inf
     _asked: float = inf
     _longest: float = 0.0
@@ -98,9 +77,24 @@ class Pace:
         unknown = min(busy * MIN_RESERVE, max(MIN_RESERVE, MAX_RESERVE_SHARE * total))
         return max(unknown, RESERVE_SHARE * total, SAFETY * self.cost(boxes)) + self._longest
 
-    def cost(self, boxes: int) -> float:
-        """Seconds for a map of what so many boxes leave."""
-        return self.thin.of(boxes) + self.map.of(boxes) + self.text.of(boxes)
+    def record(self, kind: str, boxes: int, seconds: float) -> None:
+        """A kind of work on so many boxes took so many seconds."""
+        self._known[kind] = [*self._known.get(kind, [])[-1:], (boxes, seconds)]
+
+    def cost(self, boxes: int, *kinds: str) -> float:
+        """Seconds that some kinds of work on so many boxes will take, or all for a map, by the last
+        two times that each was done: with more boxes more, with fewer no less.
+        """
+        return sum(
+            max(
+                (
+                    seconds * max(1.0, boxes / max(known, MIN_TIMED_BOXES))
+                    for known, seconds in self._known.get(kind, ())
+                ),
+                default=RATES[kind] * boxes,
+            )
+            for kind in kinds or RATES
+        )
 
     def late(self, boxes: int) -> bool:
         """Whether the search has to end; to be asked after each of its tasks, which it measures
@@ -130,7 +124,7 @@ class Pace:
         """
         if self.clock() < self._look_at:
             return False
-        cost = self.cost(boxes) - (0.0 if thinned else self.thin.of(boxes))
+        cost = self.cost(boxes) if thinned else self.cost(boxes, "map", "text")
         affordable = self.spent + cost <= ALLOWANCE + MAP_TIME_SHARE * (self.clock() - self.started)
         return affordable and cost + self.last(boxes) < self.left()
 
@@ -141,28 +135,14 @@ LEVEL_SHRINKAGE = 0.5
 """What a level leaves of the share, about: half as wide boxes along a curve are twice as many."""
 
 
-@dataclass(slots=True)
-class SearchProgress:
-    """The way to a tolerance, and how much of it is behind."""
+def parts_done(share: float, level: float, tolerance: float) -> int:
+    """The parts of the way that are behind when a level that began at a share is done to the part
+    ``level``.
 
-    tolerance: float
-    reached: int = 0
-
-    def __post_init__(self) -> None:
-        # one below all floats has become zero, which has no logarithm
-        self.tolerance = max(self.tolerance, float_info.min)
-
-    def at(self, share: float, level: float) -> int:
-        """The part of the way that is behind when a level that began at a share is done to the part
-        ``level``.
-
-        >>> way = SearchProgress(1e-3)
-        >>> way.at(1.0, 0.0), way.at(0.1, 0.0), way.at(0.2, 0.5), way.at(0.0, 1.0)
-        (0, 333, 333, 1000)
-        """
-        left = max(share * LEVEL_SHRINKAGE ** min(max(level, 0.0), 1.0), self.tolerance)
-        part = log(min(left, 1.0)) / log(self.tolerance)
-        self.reached = max(
-            self.reached, min(int(PARTS * part), PARTS - 1 if share > self.tolerance else PARTS)
-        )
-        return self.reached
+    >>> parts_done(1.0, 0.0, 1e-3), parts_done(0.1, 0.0, 1e-3), parts_done(0.0, 1.0, 1e-3)
+    (0, 333, 1000)
+    """
+    # a tolerance below all floats has become zero, which has no logarithm
+    least = max(tolerance, float_info.min)
+    left = max(share * LEVEL_SHRINKAGE ** min(max(level, 0.0), 1.0), least)
+    return min(int(PARTS * log(min(left, 1.0)) / log(least)), PARTS - 1 if share > least else PARTS)

@@ -12,39 +12,32 @@ where |g| < k3 l0_3, and a regular point where |g| is larger.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from fractions import Fraction
 
 
-@dataclass(frozen=True, slots=True)
-class Peaks:
-    """``count`` peaks; ``regular`` is False where one is about to appear or vanish, or where
-    springs degenerate.
+def peaks(values: Mapping[str, Fraction]) -> tuple[int, bool]:
+    """The number of peaks, and whether Euler's sum holds with it; not where a peak is about to
+    appear or vanish, or where springs degenerate.
 
-    When ``regular`` holds, minima - saddles + maxima + count = 0 (if there are finitely many, none
+    That is: minima - saddles + maxima + peaks = 0 (if there are finitely many equilibria, none
     degenerate).
-    """
 
-    count: int
-    regular: bool
-
-
-def peaks(values: Mapping[str, Fraction]) -> Peaks:
-    """Those of the mechanism at values of all variables of its description, in any unit of
-    stiffness.
+    Parameters
+    ----------
+    values : of all variables of the mechanism's description, in any unit of stiffness.
     """
     rho, p1, p2 = values["rho"], values["L1"], values["L2"]
     regular = not any(creases_at(values))
     if values["k3"] * values["l0_3"] == 0:
-        return Peaks(0, regular)
+        return 0, regular
     if rho == 0:
-        return Peaks(0, regular and p1 != p2)
+        return 0, regular and p1 != p2
     square = height_squared(values)
     if square <= 0:
-        return Peaks(0, regular and square < 0)
+        return 0, regular and square < 0
     even, odd = excess_of_pull(values)
     signs = [_sign(even, side * odd, square) for side in (1, -1)]
-    return Peaks(signs.count(-1), regular and 0 not in signs)
+    return signs.count(-1), regular and 0 not in signs
 
 
 def creases_at(values: Mapping[str, Fraction]) -> tuple[bool, bool]:

@@ -21,7 +21,7 @@ from ptmcad.model.closed import conditions_of
 from ptmcad.model.description import equations_in
 from ptmcad.model.elements import factor
 from ptmcad.model.involutions import Involution
-from ptmcad.model.work import Split, split_moments
+from ptmcad.model.work import split_moments
 from ptmcad.question.savings import BY_NAME
 from ptmcad.question.slice import Slice
 from ptmcad.text.tree import to_text
@@ -49,20 +49,18 @@ def system_text(model: Model, has_free_lengths: bool = False) -> System:
         potential = "" if own is None or own.potential is None else to_text(own.potential)
         return System(unknowns, (), potential, equations, (), conditions, stability)
     relations = tuple(bar.text(mechanism.points) for bar in mechanism.closing)
-    moments = split_moments(mechanism)
-    beside = {moment.unknown: to_text(moment.value) for moment in moments.coupled}
-    stated = tuple(beside.get(unknown, "0") for unknown in unknowns if beside)
-    return System(
-        unknowns, relations, energy_text(mechanism, moments), (), (), conditions, moments=stated
-    )
+    apart = {u: to_text(tree) for u, tree in mechanism.work.items() if mechanism.coupled}
+    stated = tuple(apart.get(unknown, "0") for unknown in unknowns if apart)
+    return System(unknowns, relations, _energy_text(mechanism), (), (), conditions, moments=stated)
 
 
-def energy_text(mechanism: Mechanism, moments: Split) -> str:
+def _energy_text(mechanism: Mechanism) -> str:
     """The energy of springs less the work of loads and of moments; of springs with square roots."""
+    moments, energies = split_moments(mechanism)
     stored = [spring.text(mechanism.points) for spring in mechanism.elastic]
-    stored += map(factor, moments.energies)
+    stored += map(factor, energies)
     work = [load.text(mechanism.points) for load in mechanism.loads]
-    work += [f" - {factor(moment.value)}*{moment.unknown}" for moment in moments.steady]
+    work += [f" - {factor(value)}*{u}" for u, value in moments if not mechanism.coupled]
     return (" + ".join(stored) or "0") + "".join(work)
 
 
@@ -124,6 +122,6 @@ def _left_out(slice: Slice, without: frozenset[str]) -> tuple[PlanStep, ...]:
         ]
     except PtmcadError:
         return (variety,)  # the engine says why
-    made = frozenset[str].intersection(*(each.made for each in found))
-    kept = frozenset[str].union(*(each.kept for each in found))
+    made = frozenset[str].intersection(*(made for made, _, _ in found))
+    kept = frozenset[str].union(*(kept for _, kept, _ in found))
     return (variety, *(saving_step(name, without) for name in BY_NAME if name in made | kept))

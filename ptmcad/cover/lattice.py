@@ -14,7 +14,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ptmcad.cover.rectangles import MAX_STEPS, Cover, Window
-from ptmcad.cover.subdivision import Integers, rectangle_array
+from ptmcad.cover.subdivision import (
+    COVERED,
+    Integers,
+    Subdivision,
+    rectangle_array,
+    subdivide,
+)
 
 Floats = NDArray[np.float64]
 _ERROR = 2.0**-50
@@ -105,7 +111,7 @@ def _exactly(value: float, low: Fraction, width: Fraction, steps: int) -> int:
 
 def combined(cover: Cover) -> Cover:
     """A cover of the same points by at most as many rectangles, found at small cost."""
-    return cover_of(_fewer(rectangle_array(cover)), cover.steps)
+    return cover_of(_merged(_outermost(_merged(rectangle_array(cover)))), cover.steps)
 
 
 def gathered(cover: Cover, most: int) -> Cover:
@@ -114,48 +120,29 @@ def gathered(cover: Cover, most: int) -> Cover:
 
     The grid is the finest that needs no more of them; a cover of no more rectangles stays as it is.
     """
-    array = rectangle_array(cover)
-    if len(array) <= most:
-        return cover_of(array, cover.steps)
-    result = array
-    for shift in reversed(range(cover.steps.bit_length())):
-        boxes = _in_squares(array, shift, most)
-        if boxes is None:
+    array, steps = rectangle_array(cover), cover.steps
+    found, across = array, 1
+    tree = subdivide(array, steps)
+    while len(array) > most and across <= steps:
+        boxes = _in_squares(tree, across)
+        if len(boxes) > most:
             break
-        result = boxes
-    return cover_of(result, cover.steps)
+        found, across = boxes, 2 * across
+    return cover_of(found, steps)
 
 
-def _in_squares(array: Integers, shift: int, most: int) -> Integers | None:
-    """Boxes around the parts of rectangles in squares of 2^shift steps; None if they are more than
-    ``most``.
-    """
-    first, last = array[:, (0, 2)] >> shift, (array[:, (1, 3)] - 1) >> shift
-    spans = last - first + 1
-    if int(spans.prod(axis=1).max()) > most:
-        return None
-    found = []
-    for i in range(int(spans[:, 0].max())):
-        for j in range(int(spans[:, 1].max())):
-            there = (spans[:, 0] > i) & (spans[:, 1] > j)
-            square = first[there] + (i, j)
-            low = np.maximum(array[there][:, (0, 2)], square << shift)
-            high = np.minimum(array[there][:, (1, 3)], (square + 1) << shift)
-            found.append(np.concatenate([square, low, high], axis=1))
-    parts = np.concatenate(found)
-    parts = parts[np.lexsort((parts[:, 1], parts[:, 0]))]
-    starts = np.flatnonzero(np.concatenate([[True], (parts[1:, :2] != parts[:-1, :2]).any(axis=1)]))
-    if len(starts) > most:
-        return None
-    low, high = (
-        np.minimum.reduceat(parts[:, 2:4], starts),
-        np.maximum.reduceat(parts[:, 4:6], starts),
-    )
-    return np.stack([low[:, 0], high[:, 0], low[:, 1], high[:, 1]], axis=1)
-
-
-def _fewer(array: Integers) -> Integers:
-    return _merged(_outermost(_merged(array)))
+def _in_squares(tree: Subdivision, across: int) -> Integers:
+    """Boxes around what is covered in each square of a grid of so many squares along each axis."""
+    size = tree.steps // across
+    x, y = size * np.indices((across, across)).reshape(2, -1)
+    squares = np.stack([x, x + size, y, y + size], axis=1)
+    square, leaf = tree.meeting(squares)
+    held = tree.state[leaf] == COVERED
+    square, bounds = square[held], tree.bounds[leaf[held]]
+    boxes = np.tile([tree.steps, 0, tree.steps, 0], (len(squares), 1))
+    for k, (inner, outer) in enumerate(((np.maximum, np.minimum), (np.minimum, np.maximum)) * 2):
+        outer.at(boxes[:, k], square, inner(bounds[:, k], squares[square, k]))
+    return boxes[boxes[:, 1] > 0]
 
 
 def _outermost(array: Integers) -> Integers:
@@ -202,35 +189,26 @@ def _merged(array: Integers) -> Integers:
     """Rectangles of which none share two ends along one axis and meet along the other; the union
     stays.
     """
-    while True:
+    before, other = len(array) + 1, [2, 3, 0, 1]
+    while 0 < len(array) < before:
         before = len(array)
-        for fixed, moving in (((2, 3), (0, 1)), ((0, 1), (2, 3))):
-            array = _merged_along(array, fixed, moving)
-        if len(array) == before:
-            return array
+        array = _merged_along(_merged_along(array[:, other]))[:, other]
+    return array
 
 
-def _merged_along(array: Integers, fixed: tuple[int, int], moving: tuple[int, int]) -> Integers:
-    """Rectangles with equal ends in the fixed columns joined where they overlap or touch in the
-    moving ones.
+def _merged_along(array: Integers) -> Integers:
+    """Rectangles with equal ends in the first two columns joined where they overlap or touch in the
+    others, which come first then.
     """
-    if not len(array):
-        return array
-    array = array[
-        np.lexsort(
-            (array[:, moving[1]], array[:, moving[0]], array[:, fixed[1]], array[:, fixed[0]])
-        )
-    ]
-    rows = (array[1:, fixed[0]] != array[:-1, fixed[0]]) | (
-        array[1:, fixed[1]] != array[:-1, fixed[1]]
-    )
+    array = array[np.lexsort(array.T[::-1])]
+    rows = (array[1:, :2] != array[:-1, :2]).any(axis=1)
     group = np.concatenate([[0], np.cumsum(rows)])
     # the farthest end so far within the group: groups are lifted above each other, so that one
     # running maximum does
-    ends, ranks = np.unique(array[:, moving[1]], return_inverse=True)
+    ends, ranks = np.unique(array[:, 3], return_inverse=True)
     farthest = ends[np.maximum.accumulate(ranks + group * len(ends)) - group * len(ends)]
-    fresh = np.concatenate([[True], rows | (array[1:, moving[0]] > farthest[:-1])])
+    fresh = np.concatenate([[True], rows | (array[1:, 2] > farthest[:-1])])
     starts = np.flatnonzero(fresh)
     joined = array[starts]
-    joined[:, moving[1]] = np.maximum.reduceat(array[:, moving[1]], starts)
-    return joined
+    joined[:, 3] = np.maximum.reduceat(array[:, 3], starts)
+    return joined[:, [2, 3, 0, 1]]

@@ -14,7 +14,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -142,28 +141,33 @@ def subdivide(rectangles: Integers, steps: int) -> Subdivision:
     ----------
     rectangles : shape (k, 4), from `rectangle_array`.
     """
-    growing = _Growing(steps)
-    parts = np.zeros(1 if len(rectangles) else 0, dtype=np.int64)
-    """the parts of this depth that some rectangle meets"""
-    counts = np.full(len(parts), len(rectangles))
+    bounds = np.array([[0, steps, 0, steps]], dtype=np.int64)
+    """of all parts of this depth"""
+    met = np.zeros(1 if len(rectangles) else 0, dtype=np.int64)
+    """those of them that some rectangle meets"""
+    counts = np.full(len(met), len(rectangles))
     members = np.arange(len(rectangles))
-    """numbers of the rectangles that meet each part, part after part"""
-    while len(parts):
-        owner = np.repeat(np.arange(len(parts)), counts)
-        starts = np.cumsum(counts) - counts
-        box = growing.bounds[parts]
+    """numbers of the rectangles that meet each of these, part after part"""
+    depths, number = [], 0
+    while True:
+        state, axis = np.zeros((2, len(bounds)), dtype=np.int8)
+        cut, child = np.zeros((2, len(bounds)), dtype=np.int64)
+        depths.append((state, bounds, axis, cut, child))
+        number += len(bounds)
+        owner = np.repeat(np.arange(len(met)), counts)
+        box = bounds[met]
         x0, x1, y0, y1 = box[owner].T
         left, right, bottom, top = rectangles[members].T
         left, right = np.maximum(left, x0), np.minimum(right, x1)
         bottom, top = np.maximum(bottom, y0), np.minimum(top, y1)
         covers = (left == x0) & (right == x1) & (bottom == y0) & (top == y1)
-        covered = np.logical_or.reduceat(covers, starts)
-        growing.state[parts[covered]] = COVERED
+        covered = np.bincount(owner[covers], minlength=len(met)) > 0
+        state[met[covered]] = COVERED
         if covered.all():
             break
         kept = ~covered[owner]
         renumbered = np.cumsum(~covered) - 1
-        parts, box, counts = parts[~covered], box[~covered], counts[~covered]
+        met, box, counts = met[~covered], box[~covered], counts[~covered]
         owner, members = renumbered[owner[kept]], members[kept]
         left, right, bottom, top = left[kept], right[kept], bottom[kept], top[kept]
         starts = np.cumsum(counts) - counts
@@ -171,12 +175,19 @@ def subdivide(rectangles: Integers, steps: int) -> Subdivision:
         cut_y, found_y = _next_to_the_middle(bottom, top, box[:, 2], box[:, 3], owner, starts)
         wide = box[:, 1] - box[:, 0] >= box[:, 3] - box[:, 2]
         upright = found_x & (wide | ~found_y)
-        cut = np.where(upright, cut_x, cut_y)
-        child = growing.divide(parts, np.where(upright, 0, 1), cut)
+        line, across, order = (
+            np.where(upright, cut_x, cut_y),
+            np.where(upright, 0, 1),
+            np.arange(len(met)),
+        )
+        state[met], axis[met], cut[met], child[met] = CUT, across, line, number + 2 * order
+        bounds = np.repeat(box, 2, axis=0)
+        for side in (0, 1):
+            bounds[2 * order + side, 2 * across + 1 - side] = line
 
         low, high = np.where(upright[owner], left, bottom), np.where(upright[owner], right, top)
-        halves = (low < cut[owner], high > cut[owner])
-        numbers = [np.bincount(owner[half], minlength=len(parts)) for half in halves]
+        halves = (low < line[owner], high > line[owner])
+        numbers = [np.bincount(owner[half], minlength=len(met)) for half in halves]
         counts = np.stack(numbers, axis=1).ravel()
         starts = np.cumsum(counts) - counts
         following = np.empty(int(counts.sum()), dtype=np.int64)
@@ -184,9 +195,9 @@ def subdivide(rectangles: Integers, steps: int) -> Subdivision:
             of, rank = repeated(numbers[side])
             following[starts[2 * of + side] + rank] = members[half]
         members = following
-        parts = np.stack([child, child + 1], axis=1).ravel()[counts > 0]
-        counts = counts[counts > 0]
-    return growing.finished()
+        met = np.flatnonzero(counts)
+        counts = counts[met]
+    return Subdivision(steps, *(np.concatenate(column) for column in zip(*depths, strict=True)))
 
 
 def _next_to_the_middle(
@@ -208,52 +219,6 @@ def _next_to_the_middle(
     below, above = np.maximum.reduceat(below, starts), np.minimum.reduceat(above, starts)
     from_above = (above < last) & ((below == first) | (2 * above - double < double - 2 * below))
     return np.where(from_above, above, below), (above < last) | (below > first)
-
-
-class _Growing:
-    """The arrays of a subdivision while parts are added; parts that no rectangle meets stay FREE."""
-
-    def __init__(self, steps: int) -> None:
-        self.steps, self.parts = steps, 1
-        self.state = np.zeros(1024, dtype=np.int8)
-        self.axis = np.zeros(1024, dtype=np.int8)
-        self.bounds = np.zeros((1024, 4), dtype=np.int64)
-        self.cut = np.zeros(1024, dtype=np.int64)
-        self.child = np.zeros(1024, dtype=np.int64)
-        self.bounds[0] = (0, steps, 0, steps)
-
-    def divide(self, parts: Integers, axis: Integers, cut: Integers) -> Integers:
-        """Cut the parts; the numbers of their lower halves."""
-        child = self.parts + 2 * np.arange(len(parts))
-        self.parts += 2 * len(parts)
-        while self.parts > len(self.state):
-            self.state, self.axis = _doubled(self.state), _doubled(self.axis)
-            self.bounds, self.cut, self.child = (
-                _doubled(self.bounds),
-                _doubled(self.cut),
-                _doubled(self.child),
-            )
-        self.state[parts], self.axis[parts], self.cut[parts], self.child[parts] = (
-            CUT,
-            axis,
-            cut,
-            child,
-        )
-        for side in (0, 1):
-            self.bounds[child + side] = self.bounds[parts]
-            self.bounds[child + side, 2 * axis + 1 - side] = cut
-        return child
-
-    def finished(self) -> Subdivision:
-        n = self.parts
-        return Subdivision(
-            self.steps, self.state[:n].copy(), self.bounds[:n].copy(), self.axis[:n].copy(), self.cut[:n].copy(),
-            self.child[:n].copy(),
-        )  # fmt: skip
-
-
-def _doubled(array: NDArray[Any]) -> NDArray[Any]:
-    return np.concatenate([array, np.zeros_like(array)])
 
 
 def touching(leaves: Integers) -> tuple[Integers, Integers, NDArray[np.bool_]]:

@@ -15,7 +15,7 @@ from math import inf, nextafter
 import numpy as np
 from numpy.typing import NDArray
 
-from ptmcad.formulas.graph import Formula, Operation
+from ptmcad.formulas.graph import Formula
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -111,6 +111,3 @@ def _append(formula: Formula, order: list[Formula], place: dict[int, int]) -> No
         place[node.number] = len(order)
         order.append(node)
         waiting.pop()
-
-
-__all__ = ["Operation", "Tape", "enclosing_floats", "record"]

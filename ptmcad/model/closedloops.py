@@ -40,33 +40,20 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from itertools import combinations
-from typing import NamedTuple
 
 from ptmcad.formulas.graph import Formula, cofactors, determinant, gradient
 
 Row = tuple[Formula, ...]
 
 
-class EquilibriumConditions(NamedTuple):
-    """What holds at equilibria of closed loops, or of angles that follow others.
-
-    Attributes
-    ----------
-    equations : one for each unknown.
-    stability : positive at stable solutions.
-    tangent : T, where one degree of freedom of closed loops is left; else empty.
-    inequalities : positive at all solutions.
-    """
-
-    equations: Row
-    stability: Row
-    tangent: Row = ()
-    inequalities: Row = ()
+Conditions = tuple[Row, Row, Row, Row]
+"""What holds at equilibria of closed loops, or of angles that follow others: one equation for each
+unknown; what is positive at stable solutions; T, where one degree of freedom of closed loops is
+left; and what is positive at all solutions.
+"""
 
 
-def conditions(
-    closing: Row, forces: Row, unknowns: Sequence[int], tensions: Row
-) -> EquilibriumConditions:
+def conditions(closing: Row, forces: Row, unknowns: Sequence[int], tensions: Row) -> Conditions:
     """What holds at equilibria.
 
     Parameters
@@ -81,14 +68,11 @@ def conditions(
     rows = [gradient(g, unknowns) for g in closing]
     tangent = cofactors(rows)
     slope = dot(tangent, forces)
-    return EquilibriumConditions(
-        (*closing, slope), (determinant([*rows, gradient(slope, unknowns)]),), tangent
-    )
+    stable = determinant([*rows, gradient(slope, unknowns)])
+    return (*closing, slope), (stable,), tangent, ()
 
 
-def _stationary(
-    closing: Row, forces: Row, unknowns: Sequence[int], tensions: Row
-) -> EquilibriumConditions:
+def _stationary(closing: Row, forces: Row, unknowns: Sequence[int], tensions: Row) -> Conditions:
     """The multipliers' equations and the conditions c_1, ..., c_f for stability."""
     halves = tuple(g / 2 for g in closing)
     rows = [gradient(g, unknowns) for g in halves]
@@ -99,7 +83,7 @@ def _stationary(
     zero = (closing[0].graph.constant(0),) * len(closing)
     matrix = [(*gradient(p, unknowns), *column) for p, column in zip(pulls, columns, strict=True)]
     matrix += [(*row, *zero) for row in rows]
-    return EquilibriumConditions((*pulls, *halves), tuple(_definite(matrix, len(closing))))
+    return (*pulls, *halves), tuple(_definite(matrix, len(closing))), (), ()
 
 
 def _definite(matrix: Sequence[Row], bars: int) -> Iterator[Formula]:

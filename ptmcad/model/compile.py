@@ -17,21 +17,18 @@ from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from functools import cached_property, lru_cache
 from operator import sub
-from typing import NamedTuple, TypeVar
+from typing import TypeVar
 
-from ptmcad.errors import ExpressionError
-from ptmcad.formulas.evaluation import Substitution, values
-from ptmcad.formulas.evaluation import evaluated as with_values
+from ptmcad.formulas.evaluation import values
 from ptmcad.formulas.graph import Formula, Graph, gradient
 from ptmcad.model import closedloops as loops
 from ptmcad.model import crossed
 from ptmcad.model.criterion import Criterion
 from ptmcad.model.crossed import Follower
 from ptmcad.model.description import Mechanism, Model, equations_in
-from ptmcad.model.evaluate import ByNames, Ring, RingElement, evaluate, evaluated
+from ptmcad.model.evaluate import Assignment, ByNames, Ring, RingElement, evaluate, evaluated
 from ptmcad.model.springs import AngularSpring, ElasticLine, Vector
 from ptmcad.model.work import split_moments
-from ptmcad.text.tree import Tree
 
 E = TypeVar("E", bound=RingElement)
 
@@ -237,11 +234,11 @@ def compiled_with(model: Model, variables: Mapping[str, Formula]) -> CompiledSys
     mechanism = model.whole
     followers = () if mechanism is None else tuple(mechanism.followers)
     graph = next((formula.graph for formula in variables.values()), Graph())
-    ring = _Ring(graph, variables, {*model.angles, *followers})
+    ring = Assignment(variables, graph.constant, {*model.angles, *followers})
     angles, reals = (
         tuple(variables[name].variable for name in some) for some in (model.angles, model.reals)
     )
-    conditions = ring.of(model.conditions.values())
+    conditions = evaluated(model.conditions.values(), ring)
     known = CompiledSystem(
         graph, tuple(variables), angles, reals, inequalities=conditions, criterion=model.criterion
     )
@@ -251,82 +248,50 @@ def compiled_with(model: Model, variables: Mapping[str, Formula]) -> CompiledSys
     if mechanism is model:
         return _of_slopes(known)
     if mechanism.xjoints:
-        found = _of_followers(known, model, variables)
+        found = crossed.conditions(mechanism, variables)
     else:
         found = _of_loops(known, mechanism, ring)
-    inequalities = known.inequalities + found.inequalities
-    return replace(known, **found._replace(inequalities=inequalities)._asdict())
+    equations, stability, tangent, further = found
+    return replace(
+        known,
+        equations=equations,
+        stability=stability,
+        tangent=tangent,
+        inequalities=known.inequalities + further,
+    )
 
 
-def _of_followers(
-    known: CompiledSystem, model: Model, variables: Mapping[str, Formula]
-) -> loops.EquilibriumConditions:
-    """What holds in the unknowns alone. It is multiplied out in names, which variables have in
-    their own places.
-    """
-    if any(formula is not known.graph.variable(k) for k, formula in enumerate(variables.values())):
-        own = compiled(model)
-        places = {k: variables[name] for k, name in enumerate(own.names)}
-        found = own.equations, own.stability, (), own.inequalities[len(known.inequalities) :]
-        return loops.EquilibriumConditions(*with_values(found, Substitution(known.graph, places)))
-    assert known.smooth is not None
-    moments = dict(zip(model.sorted_unknowns, known.moments, strict=True))
-    return crossed.conditions(known.smooth, known.followers, moments, variables)
-
-
-class _Ring(NamedTuple):
-    """Formulas as the values of trees."""
-
-    graph: Graph
-    variables: Mapping[str, Formula]
-    turned: set[str]
-
-    def constant(self, value: Fraction) -> Formula:
-        return self.graph.constant(value)
-
-    def parameter(self, name: str) -> Formula:
-        if name in self.turned:
-            raise ExpressionError(f"{name} is an angle: it stands inside of cos or sin")
-        return self.variables[name]
-
-    def cos(self, angle: str) -> Formula:
-        return self.variables[angle].cos()
-
-    def sin(self, angle: str) -> Formula:
-        return self.variables[angle].sin()
-
-    def of(self, trees: Iterable[Tree]) -> tuple[Formula, ...]:
-        return evaluated(trees, self)
-
-
-def _with_mechanism(known: CompiledSystem, mechanism: Mechanism, ring: _Ring) -> CompiledSystem:
+def _with_mechanism(
+    known: CompiledSystem, mechanism: Mechanism, ring: Assignment[Formula]
+) -> CompiledSystem:
     """Points, springs, loads, the smooth energy, moments."""
     points = {
         name: (evaluate(x, ring), evaluate(y, ring)) for name, (x, y) in mechanism.points.items()
     }
     springs = tuple(ElasticLine.of(spring, points, ring) for spring in mechanism.springs)
     torsion = [
-        AngularSpring(t.name, *ring.of((t.stiffness, *t.deflection))) for t in mechanism.torsion
+        AngularSpring(t.name, *evaluated((t.stiffness, *t.deflection), ring))
+        for t in mechanism.torsion
     ]
-    split = split_moments(mechanism)
+    moments, energies = split_moments(mechanism)
     others = [turned.stiffness * (1 - turned.cosine) for turned in torsion]
     loads = []
     for load in mechanism.loads:
-        (across, up), (x, y) = ring.of((load.x, load.y)), points[load.point]
+        (across, up), (x, y) = evaluated((load.x, load.y), ring), points[load.point]
         loads.append((across, up))
         others.append(-(across * x + up * y))
-    others += ring.of(split.energies)
+    others += evaluated(energies, ring)
     steady = dict.fromkeys(mechanism.unknowns, ring.constant(Fraction(0)))
-    steady |= {moment.unknown: evaluate(moment.value, ring) for moment in split.beside}
-    followers = []
-    for joint in mechanism.xjoints:
-        bars, base = ring.of((joint.bars, joint.length))
-        turned_by = crossed.second_bar(bars, base, ring.cos(joint.angle), ring.sin(joint.angle))
-        first, second = (ring.variables[angle].variable for angle in (joint.angle, joint.other))
-        followers.append(Follower(first, second, *turned_by))
+    steady |= {moment.unknown: evaluate(moment.value, ring) for moment in moments}
+    followers = tuple(
+        crossed.follower(
+            joint, ring, *(ring.values[angle].variable for angle in (joint.angle, joint.other))
+        )
+        for joint in mechanism.xjoints
+    )
     known = replace(
         known,
-        followers=tuple(followers),
+        followers=followers,
         points=points,
         springs=springs,
         torsion=tuple(torsion),
@@ -341,11 +306,13 @@ def _with_mechanism(known: CompiledSystem, mechanism: Mechanism, ring: _Ring) ->
     return replace(known, smooth=sum(known.summands(), start=ring.constant(Fraction(0))))
 
 
-def _of_system(known: CompiledSystem, model: Model, ring: _Ring) -> CompiledSystem:
+def _of_system(known: CompiledSystem, model: Model, ring: Assignment[Formula]) -> CompiledSystem:
     """What is zero, and what is positive, at solutions of a system."""
     own = equations_in(model)
     assert own is not None
-    known = replace(known, equations=ring.of(own.equations), stability=ring.of(own.stability))
+    known = replace(
+        known, equations=evaluated(own.equations, ring), stability=evaluated(own.stability, ring)
+    )
     if own.potential is None:
         return known
     moments = (ring.constant(Fraction(0)),) * len(known.unknowns)
@@ -361,8 +328,8 @@ def _of_slopes(known: CompiledSystem) -> CompiledSystem:
 
 
 def _of_loops(
-    known: CompiledSystem, mechanism: Mechanism, ring: _Ring
-) -> loops.EquilibriumConditions:
+    known: CompiledSystem, mechanism: Mechanism, ring: Assignment[Formula]
+) -> loops.Conditions:
     """Solutions are where loops are closed and balanced."""
     closing = []
     for bar in mechanism.closing:

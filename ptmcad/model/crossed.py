@@ -24,12 +24,14 @@ from math import prod
 from typing import Any, Generic, NamedTuple, TypeVar
 
 from ptmcad.errors import ExpressionError
-from ptmcad.formulas.evaluation import values
 from ptmcad.formulas.graph import Formula, determinant
-from ptmcad.model.closedloops import EquilibriumConditions
-from ptmcad.model.evaluate import ByNames
+from ptmcad.model.antiparallelogram import XJoint
+from ptmcad.model.closedloops import Conditions
+from ptmcad.model.description import Mechanism
+from ptmcad.model.evaluate import Named, Ring, evaluate, evaluated
 from ptmcad.model.identities import Polynomial, PolynomialRing
 from ptmcad.model.termbounds import MAX_TERMS, TOO_LARGE
+from ptmcad.model.work import split_moments
 
 V = TypeVar("V")
 P = TypeVar("P")
@@ -71,42 +73,45 @@ def second_bar(bars: Any, length: Any, cosine: Any, sine: Any) -> tuple[Any, Any
     return (far + near) * cosine - twice, (far - near) * sine, far + near - twice * cosine
 
 
-def conditions(
-    energy: Formula,
-    followers: Sequence[Follower[int, Formula]],
-    moments: Mapping[str, Formula],
-    variables: Mapping[str, Formula],
-) -> EquilibriumConditions:
+def follower(joint: XJoint, ring: Ring[Any], leader: V, variable: V) -> Follower[V, Any]:
+    """The second bar's angle in a ring."""
+    bars, length = evaluated((joint.bars, joint.length), ring)
+    turned = second_bar(bars, length, ring.cos(joint.angle), ring.sin(joint.angle))
+    return Follower(leader, variable, *turned)
+
+
+def conditions(mechanism: Mechanism, variables: Mapping[str, Formula]) -> Conditions:
     """What holds at equilibria in the unknowns alone, multiplied out: the equations are the e_i.
 
     Parameters
     ----------
-    energy : by unknowns and followers.
-    moments : of all unknowns; they depend on none.
-    variables : all, in their order.
+    mechanism : with X-joints, and without free lengths.
+    variables : all by their names.
 
     Raises
     ------
     ExpressionError
         When the equations may have too many terms.
     """
-    names = tuple(variables)
-    expanded = ByNames(names, PolynomialRing(MAX_PRODUCTS))
-    left, *steady = values([energy, *moments.values()], expanded)
-    bars = [
-        Follower(names[f.leader], names[f.variable], *values((f.cosine, f.sine, f.below), expanded))
-        for f in followers
-    ]
-    equations = _equations(left, bars, dict(zip(moments, steady, strict=True)))
-    rows = [[e.derivative(name) for name in moments] for e in equations]
+    ring, unknowns = PolynomialRing(MAX_PRODUCTS), mechanism.sorted_unknowns
+    placed = Named(ring, mechanism.coordinates)
+    constant_moments, energies = split_moments(mechanism)
+    parts = [tree for element in mechanism.elements.values() for tree in element.energies]
+    energy = sum(evaluated((*parts, *energies), placed), start=Polynomial(ring, {}))
+    moments = dict.fromkeys(unknowns, Polynomial(ring, {}))
+    moments |= {unknown: evaluate(moment, ring) for unknown, moment in constant_moments}
+    bars = [follower(joint, ring, joint.angle, joint.other) for joint in mechanism.xjoints]
+    equations = _equations(energy, bars, moments)
+    rows = [[e.derivative(name) for name in unknowns] for e in equations]
     most = prod(max(len(entry.terms) for entry in row) for row in rows)
     if sum(len(e.terms) for e in equations) > MAX_TERMS or most > MAX_MINOR:
         raise ExpressionError(f"{TOO_LARGE}; numbers for lengths make it smaller")
     hessian = [tuple(_formula(entry, variables) for entry in row) for row in rows]
-    return EquilibriumConditions(
+    return (
         tuple(_formula(e, variables) for e in equations),
         tuple(determinant([row[:k] for row in hessian[:k]]) for k in range(1, len(hessian) + 1)),
-        inequalities=tuple(f.below for f in followers) if len(followers) > 1 else (),
+        (),
+        tuple(_formula(b.below, variables) for b in bars if len(bars) > 1),
     )
 
 

@@ -170,18 +170,14 @@ class Element(NamedTuple):
     idle: str = ""
 
 
-class _CoordinateNames(dict[str, Place]):
-    def __missing__(self, point: str) -> Place:
-        return Name(f"{point}.x"), Name(f"{point}.y")
+def place_of(point: str) -> Place:
+    """The names of a point's coordinates, ``P.x`` and ``P.y``, in place of what these are."""
+    return Name(f"{point}.x"), Name(f"{point}.y")
 
 
-NAMES: Mapping[str, Place] = _CoordinateNames()
-"""The names of points' coordinates, ``P.x`` and ``P.y``, in place of what these are."""
-
-
-def difference(points: Mapping[str, Place], start: str, end: str) -> Place:
-    """The way from one point to another, given the coordinates as trees."""
-    (x0, y0), (x1, y1) = points[start], points[end]
+def difference(start: Place, end: Place) -> Place:
+    """The way from one place to another."""
+    (x0, y0), (x1, y1) = start, end
     return total(x1, negative(x0)), total(y1, negative(y0))
 
 
@@ -190,9 +186,9 @@ def squared(tree: Tree) -> Tree:
     return Power(tree, _TWO)
 
 
-def squared_distance(points: Mapping[str, Place], start: str, end: str) -> Tree:
-    """The square of a distance, given the coordinates as trees."""
-    return total(*map(squared, difference(points, start, end)))
+def squared_distance(start: str, end: str) -> Tree:
+    """The square of the distance of two points, in the names of their coordinates."""
+    return total(*map(squared, difference(place_of(start), place_of(end))))
 
 
 def factor(tree: Tree) -> str:
@@ -255,7 +251,7 @@ class Spring(NamedTuple):
     @property
     def element(self) -> Element:
         """For traversals."""
-        square = squared_distance(NAMES, self.start, self.end)
+        square = squared_distance(self.start, self.end)
         is_zero = isinstance(self.free, Number) and not self.free.value
         names = {"k": self.stiffness, "f": self.free, "q": square}
         return Element(
@@ -295,7 +291,7 @@ class Load(NamedTuple):
     @property
     def element(self) -> Element:
         """For traversals."""
-        x, y = NAMES[self.point]
+        x, y = place_of(self.point)
         return Element(
             (Part("1", Kind.FORCE, self.x), Part("2", Kind.FORCE, self.y)),
             (negative(product(self.x, x)), negative(product(self.y, y))),
@@ -333,9 +329,8 @@ class Closing(NamedTuple):
 
     def text(self, points: Mapping[str, Place]) -> str:
         """What is zero where it has its length, given the points' coordinates."""
-        return text_of(
-            total(squared_distance(points, self.start, self.end), negative(squared(self.length)))
-        )
+        sides = difference(points[self.start], points[self.end])
+        return text_of(total(total(*map(squared, sides)), negative(squared(self.length))))
 
 
 class TorsionSpring(NamedTuple):

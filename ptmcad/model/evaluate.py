@@ -8,7 +8,7 @@ ring needs those of single angles only. Division is by constants only: a coordin
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from fractions import Fraction
 from typing import Any, Generic, NamedTuple, Protocol, TypeVar
 
@@ -137,21 +137,33 @@ class Named(Generic[E]):
 
 
 class Assignment(Generic[E]):
-    """A ring of values of parameters."""
+    """A ring of values of names, of which some are angles: what has a cosine and a sine."""
 
-    def __init__(self, parameters: Mapping[str, E], constant: Callable[[Fraction], E]):
-        self.parameters = parameters
-        self.constant = constant
+    def __init__(
+        self,
+        values: Mapping[str, E],
+        constant: Callable[[Fraction], E],
+        angles: Collection[str] = (),
+    ):
+        self.values, self.constant, self.angles = values, constant, angles
 
     def parameter(self, name: str) -> E:
-        if name not in self.parameters:
+        if name in self.angles:
+            raise ExpressionError(f"{name} is an angle: it stands inside of cos or sin")
+        if name not in self.values:
             raise ExpressionError(f"{name} has no value")
-        return self.parameters[name]
+        return self.values[name]
 
     def cos(self, angle: str) -> E:
-        raise ExpressionError(f"the cosine and sine of {angle} are no parameters")
+        return self._turned(angle).cos()  # type: ignore[no-any-return]
 
-    sin = cos
+    def sin(self, angle: str) -> E:
+        return self._turned(angle).sin()  # type: ignore[no-any-return]
+
+    def _turned(self, angle: str) -> Any:
+        if angle not in self.angles:
+            raise ExpressionError(f"the cosine and sine of {angle} are no parameters")
+        return self.values[angle]
 
 
 class _Evaluation(Generic[E]):

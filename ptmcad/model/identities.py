@@ -15,7 +15,7 @@ from itertools import product
 
 from ptmcad.errors import ExpressionError
 from ptmcad.model.description import Mechanism
-from ptmcad.model.elements import NAMES, squared_distance
+from ptmcad.model.elements import squared_distance
 from ptmcad.model.evaluate import Named, evaluated
 from ptmcad.text.tree import Name, Tree, names_of, replaced
 
@@ -173,7 +173,7 @@ class Points:
 
     def squared(self, start: str, end: str) -> Polynomial:
         """The square of a distance."""
-        return self.value(squared_distance(NAMES, start, end))
+        return self.value(squared_distance(start, end))
 
     def varies(self, tree: Tree) -> bool:
         """Whether an expression changes with an unknown; also where that is too much to be

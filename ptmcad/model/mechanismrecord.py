@@ -259,17 +259,12 @@ def _prove(found: Mechanism, faults: Faults) -> None:
     if not faulty - _FORCELESS:
         check_unknowns(found, faults)
         check_symmetries(found, faults)
-        check_moments(found, faults)
         check_loops(found, faults)
-
-
-def check_moments(mechanism: Mechanism, faults: Faults) -> None:
-    """Note moments that depend on their own unknown and are too large to be integrated."""
-    with faults:
-        try:
-            split_moments(mechanism)
-        except ExpressionError as error:
-            raise ConfigError(f"they have no energy: {error.message}", key="moments") from None
+        with faults:
+            try:
+                split_moments(found)
+            except ExpressionError as error:  # too large to be integrated
+                raise ConfigError(f"they have no energy: {error.message}", key="moments") from None
 
 
 def _points(node: Node, context: Context) -> dict[str, tuple[Tree, Tree]]:

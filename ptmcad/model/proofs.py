@@ -14,7 +14,7 @@ from fractions import Fraction
 
 from ptmcad.errors import ConfigError, ExpressionError, Faults
 from ptmcad.model.description import Mechanism, Model
-from ptmcad.model.elements import NAMES, squared_distance
+from ptmcad.model.elements import squared_distance
 from ptmcad.model.evaluate import multiples, value_at
 from ptmcad.model.identities import Points, Polynomial
 from ptmcad.model.trees import ZERO
@@ -57,8 +57,7 @@ def check_elements(mechanism: Mechanism, faults: Faults) -> None:
     """Note each spring whose length or angle no unknown changes."""
     points = Points(mechanism)
     closing = [
-        frozenset(names_of(squared_distance(NAMES, bar.start, bar.end)))
-        for bar in mechanism.closing
+        frozenset(names_of(squared_distance(bar.start, bar.end))) for bar in mechanism.closing
     ]
     for key, element in mechanism.elements.items():
         varying = element.varying
@@ -235,7 +234,7 @@ def check_closing(mechanism: Mechanism, faults: Faults) -> None:
                 raise ConfigError(
                     f"number {first} is a bar between the same points", key=f"closing.{n}.between"
                 )
-            if not points.varies(squared_distance(NAMES, closing.start, closing.end)):
+            if not points.varies(squared_distance(closing.start, closing.end)):
                 raise ConfigError(
                     f"the distance of {closing.start} and {closing.end} is constant, so that a bar between them closes "
                     "no loop",

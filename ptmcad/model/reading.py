@@ -6,6 +6,7 @@ Guarantee: an expression that leaves here has a value in every ring (`ptmcad.mod
 
 from __future__ import annotations
 
+from collections import defaultdict
 from collections.abc import Callable, Mapping, Sequence
 from functools import cached_property
 from typing import Any, TypeVar
@@ -100,15 +101,6 @@ def _title(entry: Node) -> str:
     return title_in(entry)
 
 
-class Unread(dict[str, tuple[Tree, Tree]]):
-    """Points of which nothing is known, because what lists them is missing or faulty: any name may
-    be one's.
-    """
-
-    def __missing__(self, name: str) -> tuple[Tree, Tree]:
-        return ZERO, ZERO
-
-
 # ------------------------------------------------------------------------------------------- parameters and unknowns
 
 
@@ -165,7 +157,8 @@ class Context:
 
     Attributes
     ----------
-    points : of which there may be any until they are known.
+    points : any name may be one's until they are known, or where what lists them is missing or
+        faulty.
     second : names of angles that follow from unknown ones.
     """
 
@@ -174,7 +167,7 @@ class Context:
         self.second = second
         self.parameters: dict[str, Parameter] = {}
         self.unknowns: dict[str, UnknownKind] = {}
-        self.points: dict[str, tuple[Tree, Tree]] = Unread()
+        self.points: dict[str, tuple[Tree, Tree]] = defaultdict(lambda: (ZERO, ZERO))
 
     @cached_property
     def fixed(self) -> KnownNames:
@@ -259,7 +252,7 @@ class Context:
     def known_point(self, entry: Node, name: object) -> str:
         """The name of a point that there is, or of one that there may be."""
         points = self.points
-        if isinstance(name, str) and (name in points or isinstance(points, Unread)):
+        if isinstance(name, str) and (name in points or isinstance(points, defaultdict)):
             return name
         known = f"; the points are {', '.join(points)}" if points else ": there are no points"
         if isinstance(name, str) and points:

@@ -25,7 +25,7 @@ about a second.
 TOO_LARGE = f"this is too large to be multiplied out: it may have over {MAX_TERMS} terms"
 
 
-class Size:
+class _Size:
     """What is known of a polynomial: bounds of its degree and of its number of terms, and its
     variables.
     """
@@ -37,7 +37,7 @@ class Size:
         self.variables = variables
         self.terms = terms
 
-    def __add__(self, other: Size) -> Size:
+    def __add__(self, other: _Size) -> _Size:
         return _bounded(
             max(self.degree, other.degree),
             self.variables | other.variables,
@@ -46,37 +46,37 @@ class Size:
 
     __sub__ = __add__
 
-    def __neg__(self) -> Size:
+    def __neg__(self) -> _Size:
         return self
 
-    def __mul__(self, other: Size) -> Size:
+    def __mul__(self, other: _Size) -> _Size:
         return _bounded(
             self.degree + other.degree, self.variables | other.variables, self.terms * other.terms
         )
 
 
-def _bounded(degree: int, variables: frozenset[str], terms: int) -> Size:
+def _bounded(degree: int, variables: frozenset[str], terms: int) -> _Size:
     if terms > degree:  # else the binomial, a large number, is none that is smaller
         terms = min(terms, comb(degree + len(variables), degree))
     if terms > MAX_TERMS:
         raise ExpressionError(TOO_LARGE)
-    return Size(degree, variables, terms)
+    return _Size(degree, variables, terms)
 
 
 class Sizes:
     """The ring in which trees have their sizes as values."""
 
-    def constant(self, value: Fraction) -> Size:
-        return Size(0, frozenset(), 1)
+    def constant(self, value: Fraction) -> _Size:
+        return _Size(0, frozenset(), 1)
 
-    def parameter(self, name: str) -> Size:
-        return Size(1, frozenset({name}), 1)
+    def parameter(self, name: str) -> _Size:
+        return _Size(1, frozenset({name}), 1)
 
-    def cos(self, angle: str) -> Size:
-        return Size(1, frozenset({f"cos {angle}"}), 1)
+    def cos(self, angle: str) -> _Size:
+        return _Size(1, frozenset({f"cos {angle}"}), 1)
 
-    def sin(self, angle: str) -> Size:
-        return Size(1, frozenset({f"sin {angle}"}), 1)
+    def sin(self, angle: str) -> _Size:
+        return _Size(1, frozenset({f"sin {angle}"}), 1)
 
 
 class KnownNames(Sizes):
@@ -103,13 +103,13 @@ class KnownNames(Sizes):
         )
         self.doubtful = doubtful
 
-    def parameter(self, name: str) -> Size:
+    def parameter(self, name: str) -> _Size:
         if name in self.angles and name not in self.doubtful:
             raise ExpressionError(f"{name} is an angle: it stands inside of cos or sin")
         self._check(name, self.constants)
         return super().parameter(name)
 
-    def cos(self, angle: str) -> Size:
+    def cos(self, angle: str) -> _Size:
         if angle in self.constants and angle not in self.doubtful:
             # of a rational angle neither is rational, so that no axis could be one
             raise ExpressionError(

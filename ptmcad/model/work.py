@@ -14,10 +14,9 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Sequence
 from fractions import Fraction
 from functools import lru_cache
-from typing import NamedTuple
 
 from ptmcad.model.description import Mechanism, Model
-from ptmcad.model.elements import Moment
+from ptmcad.model.elements import Load, Moment
 from ptmcad.model.evaluate import evaluate, value_at
 from ptmcad.model.identities import Monomial, Polynomial, PolynomialRing
 from ptmcad.model.trees import product, total
@@ -30,32 +29,12 @@ _Factors = dict[str, int]
 _ITSELF: _Factors = {"": 1}
 
 
-class Split(NamedTuple):
-    """The moments of a mechanism.
-
-    Attributes
-    ----------
-    steady : their parts without unknowns.
-    energies : less what the other parts of the moments do, to be added to the energy of springs and
-        loads.
-    coupled : all of them as they are written where one depends on another unknown than its own;
-        then alone.
-    """
-
-    steady: tuple[Moment, ...]
-    energies: tuple[Tree, ...]
-    coupled: tuple[Moment, ...] = ()
-
-    @property
-    def beside(self) -> tuple[Moment, ...]:
-        """The moments that act in addition to all energies."""
-        return self.steady + self.coupled
-
-
 @lru_cache(maxsize=8)
-def split_moments(mechanism: Model) -> Split:
-    """The constant parts of the moments, and the energies of which the rest are slopes; a system
-    has none of these.
+def split_moments(mechanism: Model) -> tuple[tuple[Moment, ...], tuple[Tree, ...]]:
+    """The moments that act besides all energies, and the energies of which the rest are slopes.
+
+    The moments are the constant parts; all of them, as they are written, where one depends on
+    another unknown than its own. A system has none of either.
 
     Raises
     ------
@@ -63,7 +42,7 @@ def split_moments(mechanism: Model) -> Split:
         When a moment that depends on its unknown is too large to be multiplied out.
     """
     if mechanism.coupled:
-        return Split((), (), tuple(Moment(*each) for each in mechanism.work.items()))
+        return tuple(Moment(*each) for each in mechanism.work.items()), ()
     steady, energies = [], []
     for unknown, moment in mechanism.work.items():
         if unknown not in names_of(moment):
@@ -74,7 +53,7 @@ def split_moments(mechanism: Model) -> Split:
             steady.append(Moment(unknown, tree_of(constant, mechanism.angles)))
         if energy.terms:
             energies.append(tree_of(energy, mechanism.angles))
-    return Split(tuple(steady), tuple(energies))
+    return tuple(steady), tuple(energies)
 
 
 def acting(model: Model, unknowns: Iterable[str]) -> str:
@@ -111,26 +90,21 @@ def moments_at(model: Model, parameters: Numbers) -> dict[str, Fraction]:
         When a moment depends on another unknown.
     """
     known = dict.fromkeys(model.free_lengths, Fraction(0)) | dict(parameters)
-    found = {unknown: value_at(tree, known) for unknown, tree in split_moments(model).beside}
+    found = {unknown: value_at(tree, known) for unknown, tree in split_moments(model)[0]}
     return {unknown: value for unknown, value in found.items() if value}
 
 
-class PointForce(NamedTuple):
-    """A load where the parameters have values: its point, and its components across and up by their
-    names.
+LoadsAt = tuple[tuple[Load, tuple[Fraction, Fraction]], ...]
+"""Loads with their components across and up."""
+
+
+def loads_at(mechanism: Mechanism, parameters: Numbers) -> LoadsAt:
+    """The loads in the description's order where the parameters have values; variables that are not
+    among these are zero.
     """
-
-    point: str
-    names: tuple[str, str]
-    force: tuple[Fraction, Fraction]
-
-
-def loads_at(mechanism: Mechanism, parameters: Numbers) -> tuple[PointForce, ...]:
-    """The loads in the description's order; variables that are not among the parameters are zero."""
     known = dict.fromkeys(mechanism.variables, Fraction(0)) | dict(parameters)
     return tuple(
-        PointForce(load.point, load.names, (value_at(load.x, known), value_at(load.y, known)))
-        for load in mechanism.loads
+        (load, (value_at(load.x, known), value_at(load.y, known))) for load in mechanism.loads
     )
 
 

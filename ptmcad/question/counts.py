@@ -141,7 +141,7 @@ def _longer_than_free(mechanism: Mechanism) -> Iterator[Margin[Tree]]:
     no free length is negative. Lengths that are constant are in no description."""
     for spring in mechanism.springs:
         name = title_of(spring, mechanism)
-        vector = difference(mechanism.points, spring.start, spring.end)
+        vector = difference(mechanism.points[spring.start], mechanism.points[spring.end])
         yield Margin(
             text=f"the length of spring {name} less its free length",
             curve=f"point where spring {name} has its free length",

@@ -232,10 +232,12 @@ def moved(model: Model, parameters: Expressions) -> tuple[str, ...]:
     energy.
     """
     known = dict.fromkeys(model.parameters, constant(0)) | dict(parameters)
-    split = split_moments(model)
-    acting = [m for m in split.steady if value_among(m.value, known, constant).numerator]
     # a moment that depends on another unknown is none of the axes alone
-    return tuple(m.unknown for m in (*acting, *split.coupled))
+    return tuple(
+        unknown
+        for unknown, moment in split_moments(model)[0]
+        if model.coupled or value_among(moment, known, constant).numerator
+    )
 
 
 def without_free_lengths(

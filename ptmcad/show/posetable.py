@@ -117,7 +117,7 @@ def point_texts(poses: Poses, text: Callable[[str, Fraction], str]) -> list[str]
     rest = [text(name, value) for name, value in shown.items() if name not in model.forces]
     loads = [text(name, value) for name, value in shown.items() if name in model.forces and value]
     acting = () if model.whole is None else loads_at(model.whole, poses.parameters)
-    idle = acting and not any(force for load in acting for force in load.force)
+    idle = acting and not any(any(forces) for _, forces in acting)
     return [*rest, *loads, *(["no load"] if idle else [])]
 
 

@@ -23,7 +23,7 @@ from ptmcad.certified.pace import (
     PARTS,
     SAFETY,
     Pace,
-    SearchProgress,
+    parts_done,
 )
 from ptmcad.errors import LimitReached
 from ptmcad.formulas.compilation import FUNCTIONS
@@ -54,7 +54,7 @@ def test_the_last_map_is_foreseen_from_those_before() -> None:
     clock = Clock()
     pace = Pace(clock() + 100, clock, clock)
     assert pace.last(1000) == pytest.approx(2, abs=0.1)  # a fiftieth of the time
-    pace.map.record(10_000, 3.0)
+    pace.record("map", 10_000, 3.0)
     assert pace.last(10_000) == pytest.approx(SAFETY * 3, rel=0.1)
     assert pace.last(40_000) >= SAFETY * 12
     assert pace.last(100) >= SAFETY * 3
@@ -247,8 +247,7 @@ def test_nothing_is_compiled_after_loading() -> None:
 
 
 def test_a_tolerance_below_all_floats_has_a_way_to_it() -> None:
-    way = SearchProgress(0.0)
-    assert [way.at(share, 0.0) for share in (1.0, 1e-300, 0.0)] == [
+    assert [parts_done(share, 0.0, 0.0) for share in (1.0, 1e-300, 0.0)] == [
         0,
         975,
         PARTS,

@@ -83,7 +83,7 @@ def plain_poses(model: Model, parameters: Mapping[str, Fraction], digits: int) -
         return Poses(
             model, parameters, found, Status.UNDECIDED, digits, bits, reason, undecided=unclear
         )
-    remark = _PEAKS.get(peaks(parameters).count, "") if model == ptm() else ""
+    remark = _PEAKS.get(peaks(parameters)[0], "") if model == ptm() else ""
     return Poses(model, parameters, found, Status.CERTIFIED, digits, bits, remark)
 
 
@@ -147,7 +147,7 @@ def point_slice(model: Model, parameters: Mapping[str, Fraction]) -> Slice:
 
 
 @dataclass(frozen=True, slots=True)
-class Numbers:
+class _Numbers:
     """Everything asked of a pose of a mechanism at values of its parameters.
 
     Attributes
@@ -170,7 +170,7 @@ class Numbers:
         return bool(self.system.tangent)
 
 
-def numbers_at(model: Model, parameters: Mapping[str, Fraction]) -> Numbers:
+def numbers_at(model: Model, parameters: Mapping[str, Fraction]) -> _Numbers:
     """Of a mechanism, as formulas in its unknowns."""
     mechanism = model.whole
     assert mechanism is not None
@@ -192,11 +192,11 @@ def numbers_at(model: Model, parameters: Mapping[str, Fraction]) -> Numbers:
         slopes = gradient(potential, variables)
         hessian = [entry for slope in slopes for entry in gradient(slope, variables)]
     tape = record([list(found.values()), hessian, slopes])
-    return Numbers(mechanism, parameters, system, tuple(found), tape)
+    return _Numbers(mechanism, parameters, system, tuple(found), tape)
 
 
 def pose_at(
-    at: Numbers, counter: PlainCounter, solution: Solution, digits: int
+    at: _Numbers, counter: PlainCounter, solution: Solution, digits: int
 ) -> tuple[Pose, int]:
     """The pose with all numbers settled or, where they may be zero, enclosed; and the bits that
     this took.
@@ -209,7 +209,7 @@ def pose_at(
 
 
 def measured(
-    at: Numbers, boxes: Callable[[int], tuple[Box, Box]], digits: int
+    at: _Numbers, boxes: Callable[[int], tuple[Box, Box]], digits: int
 ) -> tuple[dict[str, Enclosure], int]:
     """The numbers of a pose by name, settled or, where they may be zero, enclosed; and the bits
     that this took.
@@ -243,7 +243,7 @@ def measured(
     return _all_bounded(found, numbers), bits
 
 
-def _exact_numbers(at: Numbers, point: Point) -> dict[str, Enclosure]:
+def _exact_numbers(at: _Numbers, point: Point) -> dict[str, Enclosure]:
     """The numbers that are rational by these unknowns."""
     values = exact_values(at.tape, point)
     known, entries = ([values[int(place)] for place in outputs] for outputs in at.tape.outputs[:2])
@@ -255,7 +255,7 @@ def _exact_numbers(at: Numbers, point: Point) -> dict[str, Enclosure]:
 
 
 def _numbers_of(
-    at: Numbers, values: Sequence[arb], found: Mapping[str, Enclosure]
+    at: _Numbers, values: Sequence[arb], found: Mapping[str, Enclosure]
 ) -> dict[str, arb]:
     """The numbers of a pose by name, with its angles and deflections in radians and degrees, and
     eigenvalues.
@@ -345,7 +345,7 @@ def _holds(stable: bool | None, margins: Sequence[Enclosure]) -> bool | None:
 
 
 def assembled(
-    at: Numbers, numbers: Mapping[str, Enclosure], index: int | None, stable: bool | None
+    at: _Numbers, numbers: Mapping[str, Enclosure], index: int | None, stable: bool | None
 ) -> Pose:
     """The pose of these numbers by name, whose Hessian was proved to have so many negative
     eigenvalues.

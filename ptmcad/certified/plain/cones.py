@@ -13,16 +13,14 @@ not.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
-from typing import Any, NamedTuple
+from collections.abc import Callable, Sequence
+from typing import NamedTuple
 
 from ptmcad.certified.plain.divisors import over
-from ptmcad.certified.plain.harmonics import TrigonometricPolynomial, Unknown
+from ptmcad.certified.plain.harmonics import TrigonometricPolynomial, Unknown, mapped
 from ptmcad.certified.plain.problem import SpringCone
 from ptmcad.formulas.graph import (
     Formula,
-    Graph,
     direction,
     expression_formula,
     inverse_length,
@@ -100,78 +98,45 @@ class ConeFormulas(NamedTuple):
         )
 
 
-@dataclass(frozen=True, slots=True)
-class ConeShape:
-    """What formulas of a spring are written of, exactly; by each unknown, over the factor of its
-    equation.
-
-    Attributes
-    ----------
-    pull : stiffness times free length.
-    difference : d.
-    weights, bends : what the spring is in the equations by, and the derivatives of that by each
-        unknown.
-    slopes : of d by each unknown.
-    levers : scalar products of d and the derivatives of the weights, each by its own unknown.
-    squares, crosses : scalar products of the weights, and their cross products.
-    """
-
-    pull: Expression
-    difference: Pair
-    weights: tuple[Pair, ...]
-    slopes: tuple[Pair, ...]
-    bends: tuple[tuple[Pair, ...], ...]
-    levers: tuple[TrigonometricPolynomial, ...]
-    squares: tuple[tuple[TrigonometricPolynomial, ...], ...]
-    crosses: tuple[tuple[TrigonometricPolynomial, ...], ...]
-
-    def spring(
-        self, graph: Graph, unknowns: Sequence[Unknown], phi: Formula | None
-    ) -> ConeFormulas:
-        """The formulas in a graph.
-
-        Parameters
-        ----------
-        phi : the angle of the spring's direction, where that is a variable of its own.
-        """
-
-        def written(part: Any) -> Any:
-            return tuple(map(written, part)) if isinstance(part, tuple) else part.formula(unknowns)
-
-        dx, dy = written(self.difference)
-        ux, uy = (direction(dx, dy), direction(dy, dx)) if phi is None else (phi.cos(), phi.sin())
-        vectors = written(self.weights)
-        return ConeFormulas(
-            expression_formula(graph, self.pull),
-            (dx, dy),
-            (ux, uy),
-            length(dx, dy) if phi is None else dx * ux + dy * uy,
-            inverse_length(dx, dy),
-            tuple(i for i, (a, b) in enumerate(self.weights) if a.terms or b.terms),
-            tuple(ux * a + uy * b for a, b in vectors),
-            tuple(ux * b - uy * a for a, b in vectors),
-            tuple(ux * b - uy * a for a, b in written(self.slopes)),
-            tuple(tuple(ux * a + uy * b for a, b in row) for row in written(self.bends)),
-            *map(written, (self.levers, self.squares, self.crosses)),
-        )
+Writer = Callable[[Sequence[Unknown], Formula | None], ConeFormulas]
+"""The formulas of a spring in what stands for the unknowns, with the angle of its direction where
+that is a variable of its own."""
 
 
-def shape(cone: SpringCone, factors: Sequence[Expression]) -> ConeShape:
-    """Of a spring, with the positive factors of the equations."""
-    x, y = cone.difference
+def writer(cone: SpringCone, factors: Sequence[Expression]) -> Writer:
+    """What writes a spring; it is multiplied out once, over the positive factors of the equations."""
+    (x, y), size = cone.difference, range(len(factors))
     weights = tuple(
         (over(a, g), over(b, g)) for (a, b), g in zip(cone.weights, factors, strict=True)
     )
-    return ConeShape(
-        cone.pull,
-        cone.difference,
-        weights,
-        tuple((over(x.derivative(i), g), over(y.derivative(i), g)) for i, g in enumerate(factors)),
-        tuple(
-            tuple((a.derivative(j), b.derivative(j)) for j in range(len(factors)))
-            for a, b in weights
-        ),
+    slopes = tuple(
+        (over(x.derivative(i), g), over(y.derivative(i), g)) for i, g in enumerate(factors)
+    )
+    bends = tuple(tuple((a.derivative(j), b.derivative(j)) for j in size) for a, b in weights)
+    products = (
         tuple(x * a.derivative(i) + y * b.derivative(i) for i, (a, b) in enumerate(weights)),
         tuple(tuple(a * c + b * d for c, d in weights) for a, b in weights),
         tuple(tuple(a * d - b * c for c, d in weights) for a, b in weights),
     )
+    active = tuple(i for i, (a, b) in enumerate(weights) if a.terms or b.terms)
+
+    def written(unknowns: Sequence[Unknown], phi: Formula | None) -> ConeFormulas:
+        (dx, dy), by_weights, by_slopes, by_bends, numbers = mapped(
+            (cone.difference, weights, slopes, bends, products), lambda f: f.formula(unknowns)
+        )
+        ux, uy = (direction(dx, dy), direction(dy, dx)) if phi is None else (phi.cos(), phi.sin())
+        return ConeFormulas(
+            expression_formula(unknowns[0].graph, cone.pull),
+            (dx, dy),
+            (ux, uy),
+            length(dx, dy) if phi is None else dx * ux + dy * uy,
+            inverse_length(dx, dy),
+            active,
+            tuple(ux * a + uy * b for a, b in by_weights),
+            tuple(ux * b - uy * a for a, b in by_weights),
+            tuple(ux * b - uy * a for a, b in by_slopes),
+            tuple(tuple(ux * a + uy * b for a, b in row) for row in by_bends),
+            *numbers,
+        )
+
+    return written

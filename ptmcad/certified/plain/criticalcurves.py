@@ -56,22 +56,22 @@ def _of_branch(
     bounds = ranges(problem, slice.axes)
     exact = geometry(problem, slice.axes)
     at = chart(exact)
-    left_out = omissions(slice, problem, count, without)
+    left_out, _, mirrors = omissions(slice, problem, count, without)
     search = CurveSearch(
         exact,
         bounds,
         variable_weights(slice, at.equations, bounds),
         short_lengths(slice, at.lengths, bounds),
-        SADDLES in left_out.made,
-        DEPENDENT in left_out.made,
+        SADDLES in left_out,
+        DEPENDENT in left_out,
         problem.conditions(count),
         problem.closing > 0 and count.is_of_stable,
     )
-    if left_out.mirrors:
-        yield from _quotient(search, left_out.mirrors, at)
+    if mirrors:
+        yield from _quotient(search, mirrors, at)
     else:
         yield from (_fold(search, at), *_short_folds(search, at))
-    if CONES not in left_out.made:
+    if CONES not in left_out:
         yield from cones(search, at)
     yield from _boundaries(search, at)
     yield from _of_predicate(search, at)
@@ -111,19 +111,9 @@ def _fold_about(
     long = (
         () if charted is None else [_excess(search, at, s, charted) for s in _charted(search, at)]
     )
-    cheap, costly = (
-        [*own, *more] if search.dependent else []
-        for own, more in zip(fold.vanishing, _dependent(search, at), strict=True)
-    )
-    nonnegative = [
-        *fold.nonnegative,
-        *long,
-        *_far(search, at),
-        *(_semidefinite(at) if search.stable else ()),
-        *search.values(at),
-    ]
-    solving = [*fold.equations, *at.equations, *cheap]
-    pruning = Pruning([f for f in cheap if f.value is None], costly, nonnegative, solving)
+    nonnegative = [*fold.nonnegative, *long]
+    pruning = _pruning(search, at, fold.equations, fold.vanishing, nonnegative)
+    pruning = pruning._replace(cheap=[f for f in pruning.cheap if f.value is None])
     return search.curve(
         fold.name + search.problem.where, fold.reason, fold.equations, pruning, fold.ranges
     )
@@ -139,15 +129,44 @@ def _charted(search: CurveSearch, at: SpringChart) -> list[int]:
 def _fold(search: CurveSearch, at: SpringChart) -> CriticalCurve:
     """Solutions with a singular Jacobian, every spring long that has a chart where it is short."""
     equations = [*at.equations, at.determinant()]
-    cheap, costly = _dependent(search, at)
-    nonnegative = [
-        *(_excess(search, at, s) for s in _charted(search, at)),
-        *_far(search, at),
-        *(_semidefinite(at) if search.stable else []),
-        *search.values(at),
-    ]
-    pruning = Pruning(cheap, costly, nonnegative, [*at.equations, *cheap])
+    nonnegative = [_excess(search, at, s) for s in _charted(search, at)]
+    pruning = _pruning(search, at, nonnegative=nonnegative)
     return search.curve(_name(search), _reason(search), equations, pruning)
+
+
+def _pruning(
+    search: CurveSearch,
+    at: SpringChart,
+    equations: Sequence[Formula] = (),
+    vanishing: tuple[Sequence[Formula], Sequence[Formula]] = ((), ()),
+    nonnegative: Sequence[Formula] = (),
+    minima: Sequence[Formula] | None = None,
+) -> Pruning:
+    """What discards boxes in the search for folds.
+
+    Parameters
+    ----------
+    equations : besides those of the problem.
+    vanishing, nonnegative : formulas, cheap and costly ones, that are used in addition.
+    minima : what is not negative at minima, where that is not `_semidefinite`.
+    """
+    cheap, costly = (
+        [*own, *more] if search.dependent else []
+        for own, more in zip(vanishing, _dependent(search, at), strict=True)
+    )
+    if minima is None:
+        minima = _semidefinite(at) if search.stable else ()
+    return Pruning(
+        cheap,
+        costly,
+        [
+            *nonnegative,
+            *_far(search, at),
+            *minima,
+            *search.values(at),
+        ],
+        [*equations, *at.equations, *cheap],
+    )
 
 
 def _far(search: CurveSearch, at: SpringChart) -> list[Formula]:
@@ -186,7 +205,9 @@ def _semidefinite(at: SpringChart) -> list[Formula]:
 
 
 def _dependent(search: CurveSearch, at: SpringChart) -> tuple[Sequence[Formula], Sequence[Formula]]:
-    """What vanishes at folds besides the equations, cheap formulas first."""
+    """What vanishes at folds besides the equations, cheap formulas first; nothing without that
+    saving.
+    """
     if not search.dependent:
         return (), ()
     moments = [turned.moment for turned in at.turned]
@@ -205,16 +226,15 @@ def _boundaries(search: CurveSearch, at: SpringChart) -> Iterator[CriticalCurve]
     """
     semidefinite = [*principal_minors(at.hessian), determinant(at.hessian)] if search.stable else []
     semidefinite += [at.determinant()] if search.rising else []
-    values = search.values(at)
-    for k, condition in enumerate(search.conditions):
-        pruning = Pruning(nonnegative=[*values[:k], *values[k + 1 :], *semidefinite])
-        yield _boundary(search, at, condition, pruning)
+    yield from _zeros(search, at, search.conditions, Pruning(nonnegative=semidefinite))
 
 
 def _of_predicate(search: CurveSearch, at: SpringChart) -> Iterator[CriticalCurve]:
     """Stable equilibria at which one of a predicate's margins is zero, and no other one is
     negative.
     """
+    if not search.problem.further:
+        return
     minima = (
         [*_semidefinite(at), at.determinant(at_equilibrium=True)]
         if search.problem.is_gradient
@@ -222,26 +242,28 @@ def _of_predicate(search: CurveSearch, at: SpringChart) -> Iterator[CriticalCurv
     )
     minima += [at.determinant()] if search.rising else []
     cheap = [*(turned.moment for turned in at.turned), *at.dependent]
-    values = [condition.value.formula(at.unknowns) for condition in search.problem.further]
-    for k, condition in enumerate(search.problem.further):
-        nonnegative = [*values[:k], *values[k + 1 :], *minima, *search.values(at)]
-        yield _boundary(
-            search, at, condition, Pruning(cheap, at.balances, nonnegative, [*at.equations, *cheap])
+    nonnegative = [*minima, *search.values(at)]
+    pruning = Pruning(cheap, at.balances, nonnegative, [*at.equations, *cheap])
+    yield from _zeros(search, at, search.problem.further, pruning)
+
+
+def _zeros(
+    search: CurveSearch, at: SpringChart, conditions: Sequence[Condition], pruning: Pruning
+) -> Iterator[CriticalCurve]:
+    """The solutions at which one of some conditions is zero, and no other one is negative."""
+    values = [condition.value.formula(at.unknowns) for condition in conditions]
+    for k, condition in enumerate(conditions):
+        zero, *others = (f.formula(at.unknowns) for f in condition.squares or (condition.value,))
+        yield search.curve(
+            (condition.curve or f"point where {condition.text} is 0") + search.problem.where,
+            condition.reason
+            or f"solutions count where {condition.text} > 0, and at one of them it is zero",
+            [*at.equations, zero],
+            pruning._replace(
+                cheap=[*others, *pruning.cheap],
+                nonnegative=[*values[:k], *values[k + 1 :], *pruning.nonnegative],
+            ),
         )
-
-
-def _boundary(
-    search: CurveSearch, at: SpringChart, condition: Condition, pruning: Pruning
-) -> CriticalCurve:
-    """The solutions at which a condition is zero."""
-    zero, *others = (f.formula(at.unknowns) for f in condition.squares or (condition.value,))
-    return search.curve(
-        (condition.curve or f"point where {condition.text} is 0") + search.problem.where,
-        condition.reason
-        or f"solutions count where {condition.text} > 0, and at one of them it is zero",
-        [*at.equations, zero],
-        pruning._replace(cheap=[*others, *pruning.cheap]),
-    )
 
 
 def _short_folds(
@@ -260,21 +282,16 @@ def _short_folds(
             if search.stable
             else []
         )
-        equations = [at.aligned, *at.equations, at.determinant()]
-        cheap, costly = _dependent(search, at)
         nonnegative = [
             at.cones[s].extent,
             -_excess(search, at, s, mirror),
             *([] if mirror is None else [NEAR_SQUARED - _distance_squared(search, at, mirror)]),
-            *_far(search, at),
-            *minima,
-            *search.values(at),
         ]
         yield search.curve(
             f"{_name(search)} with spring {cone.name} short",
             f"{_reason(search)}; spring {cone.name} is at most {search.short[s]} long",
-            equations,
-            Pruning(cheap, costly, nonnegative, [*at.equations, *cheap]),
+            [at.aligned, *at.equations, at.determinant()],
+            _pruning(search, at, nonnegative=nonnegative, minima=minima),
             (*search.ranges, TURN),
         )
 

@@ -20,11 +20,10 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 from itertools import product
 
-from ptmcad.certified.plain.cones import ConeFormulas, ConeShape, Pair, shape
+from ptmcad.certified.plain.cones import Pair, Writer, writer
 from ptmcad.certified.plain.divisors import common_factor, divided, largest_factor, over
-from ptmcad.certified.plain.harmonics import TrigonometricPolynomial, Unknown
+from ptmcad.certified.plain.harmonics import TrigonometricPolynomial
 from ptmcad.certified.plain.problem import Problem, Push, SpringCone
-from ptmcad.formulas.graph import Formula, expression_formula
 from ptmcad.question.slice import Axis
 from ptmcad.text.expressions import Expression, constant
 
@@ -36,8 +35,8 @@ class FactoredProblem:
     Attributes
     ----------
     factors : of the equations, positive in the open window.
-    equations, slopes : the smooth parts over their factors, and their derivatives by the unknowns.
-    shapes : of the springs with a free length.
+    equations : the smooth parts over their factors.
+    springs : what writes those with a free length.
     turns : directions in which bodies turn together; none are used of closed loops, and where
         springs are pushes.
     pushes : of the problem, with their weights over the factors.
@@ -46,8 +45,7 @@ class FactoredProblem:
     problem: Problem
     factors: tuple[Expression, ...]
     equations: tuple[TrigonometricPolynomial, ...]
-    slopes: tuple[tuple[TrigonometricPolynomial, ...], ...]
-    shapes: tuple[ConeShape, ...]
+    springs: tuple[Writer, ...]
     turns: tuple[Turn, ...]
     pushes: tuple[Push, ...]
 
@@ -70,8 +68,7 @@ def geometry(problem: Problem, axes: tuple[Axis, Axis] | None = None) -> Factore
         problem,
         factors,
         equations,
-        tuple(tuple(f.derivative(j) for j in range(len(factors))) for f in equations),
-        tuple(shape(cone, factors) for cone in problem.cones),
+        tuple(writer(cone, factors) for cone in problem.cones),
         found,
         tuple(
             replace(
@@ -99,12 +96,6 @@ def common_factors(problem: Problem, axes: tuple[Axis, Axis]) -> tuple[Expressio
     )
 
 
-MAX_DIRECTIONS = 1
-"""Directions w that are used: those in which most terms drop out. More of them cost more than they
-discard.
-"""
-
-
 @dataclass(frozen=True, slots=True)
 class Turn:
     """A direction w of unknowns that change together.
@@ -127,36 +118,10 @@ class Turn:
     factor: Expression
     arm: Expression
 
-    def moment(self, springs: Sequence[ConeFormulas], unknowns: Sequence[Unknown]) -> Formula:
-        """What vanishes at equilibria."""
-        total, rest = _written(self.slope, unknowns)
-        for at, (_, e, _) in zip(springs, self.levers, strict=True):
-            (x, y), (ux, uy) = _written(e, unknowns), at.unit
-            total = total - at.pull * (ux * x + uy * y)
-        return expression_formula(rest.graph, self.arm) * total + rest
-
-    def stiffness(
-        self, springs: Sequence[ConeFormulas], unknowns: Sequence[Unknown], factor: Formula
-    ) -> Formula:
-        """The second derivative along w."""
-        total, rest = _written(self.bend, unknowns)
-        arm = expression_formula(rest.graph, self.arm)
-        for at, (c, e, de) in zip(springs, self.levers, strict=True):
-            (x, y), (dx, dy), (ux, uy) = _written(e, unknowns), _written(de, unknowns), at.unit
-            across = ux * y - uy * x
-            bent = factor * (arm * (at.inverse * across.squared()))
-            total = total - at.pull * (c * across + bent + (ux * dx + uy * dy))
-        return arm * total + rest
-
-
-def _written(pair: Pair, unknowns: Sequence[Unknown]) -> tuple[Formula, Formula]:
-    first, second = pair
-    return first.formula(unknowns), second.formula(unknowns)
-
 
 def turning_directions(problem: Problem) -> list[tuple[int, ...]]:
-    """The directions in which springs or terms drop out, the best ones first; none of closed loops,
-    and where springs are pushes.
+    """The direction w in which most springs or terms drop out, if they do in any; none of closed
+    loops, and where springs are pushes. More of them would cost more than they discard.
     """
     if problem.closing or problem.pushes:
         return []
@@ -168,8 +133,7 @@ def turning_directions(problem: Problem) -> list[tuple[int, ...]]:
             gain = _gain(problem, weights)
             if gain > 0:
                 found.append((gain, weights))
-    found.sort(key=lambda entry: -entry[0])
-    return [weights for _, weights in found[:MAX_DIRECTIONS]]
+    return [max(found, key=lambda entry: entry[0])[1]] if found else []
 
 
 def _gain(problem: Problem, weights: Sequence[int]) -> int:

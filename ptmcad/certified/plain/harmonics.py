@@ -12,8 +12,8 @@ True
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field, fields, is_dataclass, replace
 from fractions import Fraction
 from typing import Any
 
@@ -179,6 +179,17 @@ def _collected(
     return TrigonometricPolynomial(
         {key: (a, b) for key, (a, b) in total.items() if a.numerator or b.numerator}
     )
+
+
+def mapped(part: Any, of: Callable[[TrigonometricPolynomial], Any]) -> Any:
+    """Tuples and data classes, nested in any way, with something else in place of each polynomial."""
+    if isinstance(part, TrigonometricPolynomial):
+        return of(part)
+    if isinstance(part, tuple):
+        return tuple(mapped(each, of) for each in part)
+    if is_dataclass(part) and not isinstance(part, type | Expression):
+        return replace(part, **{f.name: mapped(getattr(part, f.name), of) for f in fields(part)})
+    return part
 
 
 def waves(multiples: Multi) -> tuple[TrigonometricPolynomial, TrigonometricPolynomial]:

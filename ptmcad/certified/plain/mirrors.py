@@ -12,7 +12,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from itertools import product
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from ptmcad.certified.plain.cones import Matrix
 from ptmcad.certified.plain.harmonics import Angle, TrigonometricPolynomial, Unknown
@@ -120,7 +120,7 @@ def _squares(
     )
 
 
-class SignedSum(NamedTuple):
+class _SignedSum(NamedTuple):
     """An unknown as a sum: a sign times an even coordinate, one times an odd one, and quarter
     turns.
 
@@ -151,7 +151,7 @@ class MirrorFrame:
 
     problem: Problem
     change: Involution
-    places: tuple[SignedSum, ...]
+    places: tuple[_SignedSum, ...]
     squares: tuple[TrigonometricPolynomial, ...]
     ranges: tuple[Range, ...]
     reaches: tuple[Fraction, ...]
@@ -193,24 +193,13 @@ class MirrorFrame:
         """
         found: list[Unknown] = []
         for is_angle, place in zip(self.problem.is_angle, self.places, strict=True):
-            if not is_angle:
-                total = graph.constant(0)
-                if place.even >= 0:
-                    total = total + place.even_sign * evens[place.even]
-                if odds and place.odd >= 0:
-                    odd = odds[place.odd]
-                    assert isinstance(odd, Formula)
-                    total = total + place.odd_sign * odd
-                found.append(total)
-                continue
-            angle = Angle(graph, quarters=place.quarters)
+            total: Any = Angle(graph, quarters=place.quarters) if is_angle else graph.constant(0)
             if place.even >= 0:
-                angle = angle + place.even_sign * Angle(graph, {evens[place.even]: 1})
+                even = evens[place.even]
+                total += place.even_sign * (Angle(graph, {even: 1}) if is_angle else even)
             if odds and place.odd >= 0:
-                odd = odds[place.odd]
-                assert isinstance(odd, Angle)
-                angle = angle + place.odd_sign * odd
-            found.append(angle)
+                total += place.odd_sign * odds[place.odd]
+            found.append(total)
         return found
 
     def block(
@@ -254,7 +243,7 @@ def frames(problem: Problem, change: Involution, ranges: Sequence[Range]) -> Ite
     squares = tuple(square_of(cone.difference) for cone in problem.cones)
     for sides in product((0, 2), repeat=len(alone)):
         turned = dict(zip(alone, sides, strict=True))
-        places, evens, reaches = dict[int, SignedSum](), list[Range](), list[Fraction]()
+        places, evens, reaches = dict[int, _SignedSum](), list[Range](), list[Fraction]()
         for k, (j, sign, half) in enumerate(
             zip(change.images, change.signs, change.halves, strict=True)
         ):
@@ -263,17 +252,17 @@ def frames(problem: Problem, change: Involution, ranges: Sequence[Range]) -> Ite
             low, high = ranges[k]
             if j > k:
                 least, most = sorted(sign * end for end in ranges[j])
-                places[k] = SignedSum(len(evens), 1, len(reaches), 1, 0)
-                places[j] = SignedSum(len(evens), sign, len(reaches), -sign, 2 * half)
+                places[k] = _SignedSum(len(evens), 1, len(reaches), 1, 0)
+                places[j] = _SignedSum(len(evens), sign, len(reaches), -sign, 2 * half)
                 evens.append(TURN if angles[k] else ((low + least) / 2, (high + most) / 2))
                 reaches.append(
                     Fraction(0) if angles[k] else Fraction(max(most - low, high - least)) / 2
                 )
             elif sign > 0:
-                places[k] = SignedSum(len(evens), 1, -1, 0, 0)
+                places[k] = _SignedSum(len(evens), 1, -1, 0, 0)
                 evens.append(ranges[k])
             else:
-                places[k] = SignedSum(-1, 0, len(reaches), 1, half + turned.get(k, 0))
+                places[k] = _SignedSum(-1, 0, len(reaches), 1, half + turned.get(k, 0))
                 reaches.append(Fraction(0) if angles[k] else Fraction(max(-low, high)))
         yield MirrorFrame(
             problem,

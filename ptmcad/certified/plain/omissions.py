@@ -6,8 +6,6 @@ is written from it. Loads neither numpy nor numba.
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
 from ptmcad.certified.plain.geometry import turning_directions
 from ptmcad.certified.plain.mirrors import mirrors
 from ptmcad.certified.plain.problem import Problem
@@ -21,23 +19,12 @@ DEPENDENT = "dependent-equations"
 IMAGES = "mirror-images"
 
 
-class Omissions(NamedTuple):
-    """What the search for a problem's curves leaves out.
-
-    Attributes
-    ----------
-    made, kept : names of savings of `ptmcad.question.savings`: those that are made, and those that
-        could be and were switched off.
-    mirrors : the involutions about whose fixed points folds are searched.
-    """
-
-    made: frozenset[str]
-    kept: frozenset[str]
-    mirrors: tuple[Involution, ...]
-
-
-def omissions(slice: Slice, problem: Problem, count: Count, without: frozenset[str]) -> Omissions:
-    """What can be left out of a problem of the slice.
+def omissions(
+    slice: Slice, problem: Problem, count: Count, without: frozenset[str]
+) -> tuple[frozenset[str], frozenset[str], tuple[Involution, ...]]:
+    """What can be left out of a problem of the slice: the names of savings of
+    `ptmcad.question.savings` that are made, and of those that could be and were switched off; and
+    the involutions about whose fixed points folds are searched.
 
     Parameters
     ----------
@@ -58,4 +45,4 @@ def omissions(slice: Slice, problem: Problem, count: Count, without: frozenset[s
         # only folds of minima alone, in the unknowns themselves, have the points at which a spring
         # without length swallows a minimum
         made -= {CONES}
-    return Omissions(made, possible & without, tuple(changes) if IMAGES in made else ())
+    return made, possible & without, tuple(changes) if IMAGES in made else ()

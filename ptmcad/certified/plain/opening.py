@@ -30,7 +30,7 @@ QUARTER = (0.0, 1.5708)
 _HALF = Fraction(1, 2)
 
 
-class EvenOdd(NamedTuple):
+class _EvenOdd(NamedTuple):
     """Of a function the even part, and the odd one over r."""
 
     even: Formula
@@ -117,15 +117,15 @@ class Coordinates:
         reach = self.frame.reaches[odd]
         return self.graph.constant(reach) if reach else 2 * self._near(odd)
 
-    def _wave(self, multiples: Multi) -> EvenOdd:
+    def _wave(self, multiples: Multi) -> _EvenOdd:
         """The cosine of a sum of odd angles, and its sine over r."""
         if self.is_turning:
-            before = EvenOdd(self.coordinate, self.graph.constant(-1))
-            wave = EvenOdd(self.graph.constant(1), self.graph.constant(0))
+            before = _EvenOdd(self.coordinate, self.graph.constant(-1))
+            wave = _EvenOdd(self.graph.constant(1), self.graph.constant(0))
             for _ in range(multiples[0]):  # Chebyshev's polynomials
                 before, wave = (
                     wave,
-                    EvenOdd(
+                    _EvenOdd(
                         *(2 * self.coordinate * f - g for f, g in zip(wave, before, strict=True))
                     ),
                 )
@@ -135,11 +135,11 @@ class Coordinates:
             for _ in range(abs(n)):
                 t = self.w[j] if n > 0 else -self.w[j]
                 run, rise, near = run - self.v * (rise * t), rise + run * t, near * self._near(j)
-        return EvenOdd(2 * (run.squared() * near) - 1, 2 * (run * rise * near))
+        return _EvenOdd(2 * (run.squared() * near) - 1, 2 * (run * rise * near))
 
-    def _power(self, powers: Multi) -> EvenOdd:
+    def _power(self, powers: Multi) -> _EvenOdd:
         """A product of powers of the unknowns that are no angles."""
-        total = EvenOdd(self.graph.constant(1), self.graph.constant(0))
+        total = _EvenOdd(self.graph.constant(1), self.graph.constant(0))
         for place, power in zip(self.frame.places, powers, strict=True):
             if not power:
                 continue
@@ -154,17 +154,17 @@ class Coordinates:
             for k in range(power + 1):
                 term = comb(power, k) * (_to(even, power - k) * _to(odd, k) * _to(self.v, k // 2))
                 some[k % 2] = some[k % 2] + term
-            total = self.times(total, EvenOdd(*some))
+            total = self.times(total, _EvenOdd(*some))
         return total
 
-    def times(self, one: EvenOdd, other: EvenOdd) -> EvenOdd:
+    def times(self, one: _EvenOdd, other: _EvenOdd) -> _EvenOdd:
         """A product."""
-        return EvenOdd(
+        return _EvenOdd(
             one.even * other.even + self.v * (one.odd * other.odd),
             one.even * other.odd + one.odd * other.even,
         )
 
-    def parts(self, terms: Iterable[tuple[int, TrigonometricPolynomial]]) -> EvenOdd:
+    def parts(self, terms: Iterable[tuple[int, TrigonometricPolynomial]]) -> _EvenOdd:
         """Of a sum of multiples of polynomials."""
         size = len(self.w)
         # by odd multiples and powers, and by even multiples: of cos cos, sin cos, cos sin and sin
@@ -185,7 +185,7 @@ class Coordinates:
                 entry = known.setdefault((second, powers), {}).setdefault(first, [constant(0)] * 4)
                 for k, value in enumerate((c, d * s, d * t, c * (-s * t))):
                     entry[k] = entry[k] + value * factor
-        total = EvenOdd(self.graph.constant(0), self.graph.constant(0))
+        total = _EvenOdd(self.graph.constant(0), self.graph.constant(0))
         for (odds_, powers), by_even in known.items():
             even = odd = self.graph.constant(0)
             for multiples, (cc, sc, cs, ss) in by_even.items():
@@ -202,8 +202,8 @@ class Coordinates:
                     + expression_formula(self.graph, ss) * sine
                 )
             wave = self._wave(odds_)
-            added = self.times(EvenOdd(even * wave.even, odd * wave.odd), self._power(powers))
-            total = EvenOdd(total.even + added.even, total.odd + added.odd)
+            added = self.times(_EvenOdd(even * wave.even, odd * wave.odd), self._power(powers))
+            total = _EvenOdd(total.even + added.even, total.odd + added.odd)
         return total
 
 
@@ -235,7 +235,7 @@ class _Spring(NamedTuple):
     image: int
     pull: Formula
     square: TrigonometricPolynomial
-    parts: EvenOdd
+    parts: _EvenOdd
     product: Formula
     inverse: Formula
     share: Formula

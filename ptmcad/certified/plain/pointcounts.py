@@ -8,7 +8,7 @@ solutions: total counts do not have them.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 
@@ -27,7 +27,7 @@ from ptmcad.certified.plain.spectrum import inertia
 from ptmcad.certified.plain.springchart import SpringChart, chart, principal_minors
 from ptmcad.certified.plain.straight import branches
 from ptmcad.certified.plain.unknownranges import ranges
-from ptmcad.certified.plain.zeros import PRECISIONS, PointCount, Zeros, ZeroSearch, boxed
+from ptmcad.certified.plain.zeros import PRECISIONS, PointCount, ZeroSearch, boxed
 from ptmcad.errors import DegenerateSliceError
 from ptmcad.formulas.ballarithmetic import ball, run_arb
 from ptmcad.formulas.graph import Formula
@@ -92,9 +92,10 @@ class PlainCounter:
             When the counts contradict Euler's sum on the torus, which would be a fault of this
             program.
         """
-        zeros = self.search.at(x, y, self.stable if count.is_of_stable else self.all, thorough)
-        counted, unclear = self._counted(x, y, zeros, count)
-        unclear += zeros.open
+        system = self.stable if count.is_of_stable else self.all
+        unique, narrow, more = self.search.at(x, y, system, thorough)
+        counted, unclear = self._counted(x, y, zip(unique, narrow, strict=True), count)
+        unclear += more
         if unclear and count.is_of_stable:
             return PointCount(open=unclear)
         signs = [self._signs(x, y, wide, narrow, count) for wide, narrow in counted]
@@ -152,9 +153,8 @@ class PlainCounter:
         cones = 0 if smooth else None
         if self.slice.model == ptm() and self.problem.has_springs:
             absent = dict.fromkeys(self.slice.model.variables, Fraction(0))
-            there = peaks(absent | values_at(self.slice.parameters, x, y))
-            cones = there.count
-            if there.regular and index[0] - index[1] + index[2] + cones:
+            cones, is_regular = peaks(absent | values_at(self.slice.parameters, x, y))
+            if is_regular and index[0] - index[1] + index[2] + cones:
                 raise ArithmeticError(
                     f"minima, saddles and maxima {[*index]} with {cones} cones at ({x}, {y})"
                 )
@@ -175,14 +175,14 @@ class PlainCounter:
         return replace(found, stable=len(boxes), decided=True, further=further)
 
     def _counted(
-        self, x: Fraction, y: Fraction, zeros: Zeros, count: Count
+        self, x: Fraction, y: Fraction, zeros: Iterable[tuple[Boxes, Boxes]], count: Count
     ) -> tuple[list[tuple[Boxes, Boxes]], int]:
         """The proved zeros at which all conditions are positive, and of how many that is not
         decided.
         """
         asked = self.conditions.outputs[0][: self._asked(count)]
         found, unclear = list[tuple[Boxes, Boxes]](), 0
-        for unique, narrow in zip(zeros.unique, zeros.narrow, strict=True):
+        for unique, narrow in zeros:
             counts = self._holds(x, y, unique, asked)
             if counts is False:
                 continue
@@ -240,12 +240,10 @@ class PlainCounter:
         """
         conditions = [c.text for c in self.problem.conditions(count)]
         further = [c.text for c in self.problem.further]
-        found = (
-            self.search.at(x, y, self.stable if further else self.all, False)
-            if conditions or further
-            else None
-        )
-        for unique in () if found is None or found.open else found.unique:
+        if not (conditions or further):
+            return ""
+        zeros, _, unclear = self.search.at(x, y, self.stable if further else self.all, False)
+        for unique in () if unclear else zeros:
             if further and self.problem.is_gradient and self._index(x, y, unique) != 0:
                 continue
             for texts, places in zip((conditions, further), self.conditions.outputs, strict=True):
@@ -322,8 +320,7 @@ def _sum(parts: Sequence[PointCount]) -> PointCount:
     """Of decided counts of solutions that are all different."""
 
     def added(numbers: Sequence[int | None]) -> int | None:
-        known = [n for n in numbers if n is not None]
-        return sum(known) if len(known) == len(numbers) else None
+        return None if None in numbers else sum(n for n in numbers if n is not None)
 
     indices = [p.index for p in parts if p.index is not None]
     return PointCount(

@@ -53,39 +53,34 @@ def _near_eigenvectors(matrix: arb_mat) -> arb_mat:
     nothing is proved.
     """
     size = matrix.nrows()
-    a = [[matrix[i, j].mid() for j in range(size)] for i in range(size)]
-    v = [[arb(int(i == j)) for j in range(size)] for i in range(size)]
-    negligible = max(abs(entry) for row in a for entry in row) * arb(2) ** -ctx.prec
+    a, v = matrix.mid(), _identity(size)
+    negligible = max(abs(entry) for entry in a.entries()) * arb(2) ** -ctx.prec
     for _ in range(_MAX_SWEEPS):
-        pairs = [(p, q) for q in range(size) for p in range(q) if abs(a[p][q]) > negligible]
+        pairs = [(p, q) for q in range(size) for p in range(q) if abs(a[p, q]) > negligible]
         if not pairs:
             break
         for p, q in pairs:
-            _rotate(a, v, p, q)
-    return arb_mat(v)
+            turn = _rotation(a, p, q)
+            a, v = (turn.transpose() * a * turn).mid(), (v * turn).mid()
+    return v
 
 
-def _rotate(a: list[list[arb]], v: list[list[arb]], p: int, q: int) -> None:
-    """Turn rows and columns p and q of ``a``, and columns of ``v``, such that a[p][q] is zero but
+def _rotation(a: arb_mat, p: int, q: int) -> arb_mat:
+    """In the plane of two coordinates, such that the matrix that is turned has a zero at p, q but
     for rounding.
     """
-    if a[p][q] == 0:
-        return
-    ratio = ((a[q][q] - a[p][p]) / (2 * a[p][q])).mid()
-    tangent = (1 / (abs(ratio) + (ratio**2 + 1).sqrt())).mid() * (-1 if ratio < 0 else 1)
-    cosine = (1 / (tangent**2 + 1).sqrt()).mid()
-    sine = (tangent * cosine).mid()
-    for rows in (a, v):
-        for row in rows:
-            row[p], row[q] = (
-                (cosine * row[p] - sine * row[q]).mid(),
-                (sine * row[p] + cosine * row[q]).mid(),
-            )
-    for k in range(len(a)):
-        a[p][k], a[q][k] = (
-            (cosine * a[p][k] - sine * a[q][k]).mid(),
-            (sine * a[p][k] + cosine * a[q][k]).mid(),
-        )
+    turn = _identity(a.nrows())
+    if a[p, q] != 0:
+        ratio = ((a[q, q] - a[p, p]) / (2 * a[p, q])).mid()
+        tangent = (1 / (abs(ratio) + (ratio**2 + 1).sqrt())).mid() * (-1 if ratio < 0 else 1)
+        cosine = (1 / (tangent**2 + 1).sqrt()).mid()
+        sine = (tangent * cosine).mid()
+        turn[p, p], turn[q, q], turn[p, q], turn[q, p] = cosine, cosine, sine, -sine
+    return turn
+
+
+def _identity(size: int) -> arb_mat:
+    return arb_mat(size, size, [int(i == j) for i in range(size) for j in range(size)])
 
 
 def inertia(matrix: arb_mat) -> int | None:

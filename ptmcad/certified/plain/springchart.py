@@ -25,12 +25,12 @@ from typing import NamedTuple
 
 from ptmcad.certified.plain.cones import ConeFormulas, Matrix
 from ptmcad.certified.plain.geometry import FactoredProblem, Turn
-from ptmcad.certified.plain.harmonics import Unknown
+from ptmcad.certified.plain.harmonics import Unknown, mapped
 from ptmcad.certified.plain.problem import FIRST
 from ptmcad.formulas.graph import Formula, Graph, determinant, expression_formula, length
 
 
-class Turned(NamedTuple):
+class _Turned(NamedTuple):
     """The moment on bodies that turn together, and its derivative along the direction w of the
     unknowns.
     """
@@ -56,8 +56,8 @@ class SpringChart:
         the length 1.
     cones : with what their springs are in the equations by.
     smooth : the derivatives of the equations without springs.
-    anywhere, there : the sines' products of each spring, everywhere and where the equations vanish;
-        the latter never to be differentiated.
+    anywhere, there : what each spring takes off the matrix M, everywhere and where the equations
+        vanish; the latter never to be differentiated.
     scales : the factors g_i.
     short : number of the cone whose direction is a variable.
     turned : bodies turned by one angle.
@@ -72,11 +72,11 @@ class SpringChart:
     balances: tuple[Formula, ...]
     cones: tuple[ConeFormulas, ...]
     smooth: Matrix
-    anywhere: tuple[Matrix, ...]
-    there: tuple[Matrix, ...]
+    anywhere: tuple[_Bent, ...]
+    there: tuple[_Bent, ...]
     scales: tuple[Formula, ...]
     short: int | None
-    turned: tuple[Turned, ...]
+    turned: tuple[_Turned, ...]
     symmetric: bool
     unknowns: tuple[Unknown, ...]
 
@@ -94,20 +94,17 @@ class SpringChart:
         at, extent = self.cones[self.short], self.lengths[self.short]
         return at.vector[0] - extent * at.unit[0], at.vector[1] - extent * at.unit[1]
 
-    def _bends(self, products: Sequence[Matrix]) -> list[Bent]:
-        return [Bent(s.pull * s.inverse, p, s) for s, p in zip(self.cones, products, strict=True)]
-
     def rigid(self) -> Matrix:
         """The matrix M."""
         return _rigid(self.smooth, self.cones)
 
     def matrix_at_equilibrium(self) -> Matrix:
         """The Hessian where the equations vanish."""
-        return _less(self.rigid(), self._bends(self.there), self.scales)
+        return _less(self.rigid(), self.there, self.scales)
 
     def determinant(self, *, at_equilibrium: bool = False) -> Formula:
         """Of the Hessian; in its chart, times the length of the spring."""
-        bends = self._bends(self.there if at_equilibrium else self.anywhere)
+        bends = self.there if at_equilibrium else self.anywhere
         rigid = self.rigid()
         if self.short is None:
             return bent(rigid, bends, self.scales)
@@ -121,7 +118,7 @@ class SpringChart:
         """The determinant times the lengths of all springs, where the equations vanish: finite
         everywhere.
         """
-        bends = [Bent(at.pull, there, at) for at, there in zip(self.cones, self.there, strict=True)]
+        bends = [bend._replace(factor=bend.spring.pull) for bend in self.there]
         return bent(self.rigid(), bends, self.scales, extents=[at.extent for at in self.cones])
 
     def determinants_by_turning(self) -> Iterator[Formula]:
@@ -142,12 +139,12 @@ class SpringChart:
 
         What that spring is in it by is without its direction: |d_s| u_s is d_s.
         """
-        bends, chosen = self._bends(self.there), self.cones[s]
+        bends, chosen = self.there, self.cones[s]
         others = _rigid(self.smooth, [*self.cones[:s], *self.cones[s + 1 :]])
         rest = _less(others, bends[:s] + bends[s + 1 :], self.scales)
         return tuple(
             self.lengths[s] * rest[i][i]
-            - chosen.pull * (chosen.levers[i] + self.scales[i] * self.there[s][i][i])
+            - chosen.pull * (chosen.levers[i] + self.scales[i] * bends[s].products[i][i])
             for i in chosen.active
         )
 
@@ -170,9 +167,9 @@ def chart(
     scales = tuple(expression_formula(graph, g) for g in exact.factors)
     phi = None if short is None else graph.variable(FIRST + len(size))
     springs = tuple(
-        s.spring(graph, unknowns, phi if k == short else None) for k, s in enumerate(exact.shapes)
+        write(unknowns, phi if k == short else None) for k, write in enumerate(exact.springs)
     )
-    slopes = [[f.formula(unknowns) for f in row] for row in exact.slopes]
+    slopes = [[f.derivative(j).formula(unknowns) for j in size] for f in exact.equations]
     for push in exact.pushes:
         strength = push.strength(graph)
         for i, w in enumerate(push.weights):
@@ -183,8 +180,7 @@ def chart(
     # a rest is put together without its spring: taken off again, its part would leave an interval's
     # width behind
     rests = [_without(smooth, [t for t in springs if t is not at]) for at in springs]
-    anywhere = tuple(at.products() for at in springs)
-    bends = [Bent(at.pull * at.inverse, p, at) for at, p in zip(springs, anywhere, strict=True)]
+    bends = tuple(_Bent(at.pull * at.inverse, at.products(), at) for at in springs)
     return SpringChart(
         tuple(_without(smooth, springs)),
         _less(_rigid(slopes, springs), bends, scales),
@@ -193,8 +189,11 @@ def chart(
         tuple(f for at, rest in zip(springs, rests, strict=True) for f in _balances(at, rest)),
         springs,
         tuple(map(tuple, slopes)),
-        anywhere,
-        tuple(at.products_at_equilibrium(rest) for at, rest in zip(springs, rests, strict=True)),
+        bends,
+        tuple(
+            bend._replace(products=bend.spring.products_at_equilibrium(rest))
+            for bend, rest in zip(bends, rests, strict=True)
+        ),
         scales,
         short,
         tuple(_turned(turn, springs, unknowns) for turn in exact.turns),
@@ -203,14 +202,17 @@ def chart(
     )
 
 
-def _turned(turn: Turn, springs: Sequence[ConeFormulas], unknowns: Sequence[Unknown]) -> Turned:
-    factor = expression_formula(unknowns[0].graph, turn.factor)
-    return Turned(
-        turn.weights,
-        turn.moment(springs, unknowns),
-        turn.stiffness(springs, unknowns, factor),
-        factor,
-    )
+def _turned(turn: Turn, springs: Sequence[ConeFormulas], unknowns: Sequence[Unknown]) -> _Turned:
+    graph, parts = unknowns[0].graph, (turn.slope, turn.bend, turn.levers)
+    factor, arm = expression_formula(graph, turn.factor), expression_formula(graph, turn.arm)
+    (moment, rest), (bend, rest_bend), levers = mapped(parts, lambda f: f.formula(unknowns))
+    for at, (c, (x, y), (dx, dy)) in zip(springs, levers, strict=True):
+        ux, uy = at.unit
+        across = ux * y - uy * x
+        bent = factor * (arm * (at.inverse * across.squared()))
+        moment = moment - at.pull * (ux * x + uy * y)
+        bend = bend - at.pull * (c * across + bent + (ux * dx + uy * dy))
+    return _Turned(turn.weights, arm * moment + rest, arm * bend + rest_bend, factor)
 
 
 def _rigid(smooth: Sequence[Sequence[Formula]], springs: Sequence[ConeFormulas]) -> Matrix:
@@ -224,7 +226,7 @@ def _rigid(smooth: Sequence[Sequence[Formula]], springs: Sequence[ConeFormulas])
 
 
 def _less(
-    rigid: Sequence[Sequence[Formula]], bends: Sequence[Bent], scales: Sequence[Formula]
+    rigid: Sequence[Sequence[Formula]], bends: Sequence[_Bent], scales: Sequence[Formula]
 ) -> Matrix:
     """The matrix M less the springs' parts."""
     entries = [list(row) for row in rigid]
@@ -277,7 +279,7 @@ def principal_minors(hessian: Matrix, *, whole: bool = False) -> list[Formula]:
     ]
 
 
-class Bent(NamedTuple):
+class _Bent(NamedTuple):
     """What is taken off a matrix M: factor v (g v)^T, with the products v_i v_j and v, the sines of
     a spring.
 
@@ -291,9 +293,9 @@ class Bent(NamedTuple):
 
 def bent(
     matrix: Matrix,
-    bends: Sequence[Bent],
+    bends: Sequence[_Bent],
     scales: Sequence[Formula],
-    by: Bent | None = None,
+    by: _Bent | None = None,
     extents: Sequence[Formula] | None = None,
 ) -> Formula:
     """det(M - sum of factor_s v_s (g v_s)^T), g being the scales.
@@ -333,7 +335,7 @@ def bent(
     return total
 
 
-def _complement(matrix: Matrix, among: Sequence[Bent], scales: Sequence[Formula]) -> Formula:
+def _complement(matrix: Matrix, among: Sequence[_Bent], scales: Sequence[Formula]) -> Formula:
     """The sum over rows I and columns K of the springs' minors times the complementary minor of the
     matrix.
     """
@@ -353,7 +355,7 @@ def _complement(matrix: Matrix, among: Sequence[Bent], scales: Sequence[Formula]
 
 
 def _springs_minor(
-    among: Sequence[Bent], rows: Sequence[int], columns: Sequence[int], one: Formula
+    among: Sequence[_Bent], rows: Sequence[int], columns: Sequence[int], one: Formula
 ) -> Formula:
     """det(v_S in I) det(v_S in K)."""
     if not among:

@@ -25,7 +25,13 @@ from fractions import Fraction
 from itertools import product
 
 from ptmcad.certified.plain.divisors import common_divisor, quotient, square_root
-from ptmcad.certified.plain.harmonics import Multi, TrigonometricPolynomial, Vector, waves
+from ptmcad.certified.plain.harmonics import (
+    Multi,
+    TrigonometricPolynomial,
+    Vector,
+    mapped,
+    waves,
+)
 from ptmcad.certified.plain.problem import Condition, Problem, Push, SpringCone
 from ptmcad.question.positivity import Need, decide
 from ptmcad.question.signs import PROVED
@@ -228,50 +234,27 @@ def in_half_angle(problem: Problem, turn: Multi) -> Problem:
     turn : the multiples of its angles in that sum, of which some are odd.
     """
     size, rows = range(len(turn)), _rows(turn)
+    there: Problem = mapped(problem, lambda f: f.substituted(rows))
 
     def slopes(old: Sequence[TrigonometricPolynomial]) -> tuple[TrigonometricPolynomial, ...]:
         """By the new unknowns; with closed loops the last one is along these, the first ones stay
         without springs.
         """
-        there = [f.substituted(rows) for f in old]
         if problem.closing:
-            return tuple(there)
+            return tuple(old)
         parts = (
-            [f.scaled(Fraction(row[i])) for f, row in zip(there, rows, strict=True)] for i in size
+            [f.scaled(Fraction(row[i])) for f, row in zip(old, rows, strict=True)] for i in size
         )
         return tuple(sum(some, start=TrigonometricPolynomial({})) for some in parts)
 
-    def vectors(old: Sequence[Vector]) -> tuple[Vector, ...]:
-        across, up = (slopes(some) for some in zip(*old, strict=True))
-        return tuple(zip(across, up, strict=True))
-
-    def conditions(old: Sequence[Condition]) -> tuple[Condition, ...]:
-        return tuple(
-            c._replace(
-                value=c.value.substituted(rows),
-                squares=tuple(f.substituted(rows) for f in c.squares),
-            )
-            for c in old
-        )
+    def turned(cone: SpringCone) -> SpringCone:
+        across, up = (slopes(some) for some in zip(*cone.weights, strict=True))
+        return replace(cone, weights=tuple(zip(across, up, strict=True)))
 
     return replace(
-        problem,
-        equations=slopes(problem.equations),
-        cones=tuple(
-            replace(
-                cone,
-                difference=(
-                    cone.difference[0].substituted(rows),
-                    cone.difference[1].substituted(rows),
-                ),
-                weights=vectors(cone.weights),
-            )
-            for cone in problem.cones
-        ),
-        inequalities=conditions(problem.inequalities),
-        stability=conditions(problem.stability),
-        multiples=tuple(f.substituted(rows) for f in problem.multiples),
-        further=conditions(problem.further),
+        there,
+        equations=slopes(there.equations),
+        cones=tuple(map(turned, there.cones)),
         rows=_product(problem.rows, rows) if problem.rows else rows,
     )
 

@@ -13,7 +13,6 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
 from math import frexp, inf
-from typing import NamedTuple
 
 import numpy as np
 from flint import ctx
@@ -44,16 +43,6 @@ no fewer.
 """
 
 
-class Zeros(NamedTuple):
-    """Boxes with exactly one zero each, narrower ones around it, each zero once; and how many boxes
-    may hold more.
-    """
-
-    unique: Boxes
-    narrow: Boxes
-    open: int
-
-
 @dataclass(frozen=True, slots=True, eq=False)
 class ZeroSearch:
     """What is searched at all points of one slice.
@@ -70,15 +59,17 @@ class ZeroSearch:
     equations: EquationSystem
     pause: Callable[[], None] | None = None
 
-    def at(self, x: Fraction, y: Fraction, system: EquationSystem, thorough: bool) -> Zeros:
-        """The zeros at a point that a search proves.
+    def at(
+        self, x: Fraction, y: Fraction, system: EquationSystem, thorough: bool
+    ) -> tuple[Boxes, Boxes, int]:
+        """The zeros at a point that a search proves: boxes with exactly one each, narrower ones
+        around it, each zero once; and how many boxes may hold more.
 
         Parameters
         ----------
         system : the equations with what discards boxes.
         thorough : whether a hard point may take long.
         """
-        none = np.empty((0, 2 * (FIRST + len(self.problem.unknowns))))
         (x_low, x_high), (y_low, y_high) = enclosing_floats(x), enclosing_floats(y)
         low, high = zip(*self.ranges, strict=True)
         start = np.array([[x_low, y_low, *low, x_high, y_high, *high]])
@@ -94,8 +85,8 @@ class ZeroSearch:
         )
         kept = distinct(found.unique, found.narrow, FIRST, periods)
         if kept is None:
-            return Zeros(none, none, len(found.left()) + len(found.unique))
-        return Zeros(found.unique[kept], found.narrow[kept], len(found.left()))
+            return found.unique[:0], found.narrow[:0], len(found.left()) + len(found.unique)
+        return found.unique[kept], found.narrow[kept], len(found.left())
 
     def _isolated(
         self, arguments: Arguments, start: Boxes, finest: float, thorough: bool

@@ -12,7 +12,7 @@ poses.
 from __future__ import annotations
 
 import textwrap
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from fractions import Fraction
 
 from matplotlib.figure import Figure
@@ -22,7 +22,7 @@ from ptmcad.answer.words import assignments, of_what, untold
 from ptmcad.errors import ConfigError
 from ptmcad.model import Mechanism, Model, Support
 from ptmcad.model.joints import torsion_springs
-from ptmcad.model.work import PointForce, loads_at
+from ptmcad.model.work import LoadsAt, loads_at
 from ptmcad.show.drawable import no_drawing
 from ptmcad.show.render.axes import symbol, with_symbols
 from ptmcad.show.render.colours import INK
@@ -251,7 +251,7 @@ def support_legend(mechanism: Mechanism) -> Iterator[Entry]:
             yield Entry((f"{what}{many}, at {', '.join(names)}",), symbol_mark("slider"))
 
 
-def _load_texts(mechanism: Mechanism, acting: Sequence[PointForce]) -> Iterator[str]:
+def _load_texts(mechanism: Mechanism, acting: LoadsAt) -> Iterator[str]:
     """The components of loads that are not zero: a parameter by its name, with the points where it
     acts at several.
 
@@ -259,7 +259,7 @@ def _load_texts(mechanism: Mechanism, acting: Sequence[PointForce]) -> Iterator[
     """
     places: dict[tuple[str, str], list[str]] = {}
     known = components(acting)
-    for load in acting:
+    for load, _ in acting:
         for axis, name in zip("xy", load.names, strict=True):
             what = (
                 symbol(name) if name in mechanism.parameters else f"F{axis} at {symbol(load.point)}"

@@ -19,7 +19,7 @@ from ptmcad.answer.poses import Pose, Poses
 from ptmcad.model import Mechanism, Support
 from ptmcad.model.elements import Load
 from ptmcad.model.joints import joints_of
-from ptmcad.model.work import PointForce, loads_at
+from ptmcad.model.work import LoadsAt, loads_at
 from ptmcad.show.render.axes import symbol
 from ptmcad.show.render.labels import (
     Box,
@@ -154,12 +154,14 @@ def arrows_of(forces: Mapping[str, Fraction], largest: Fraction) -> dict[str, fl
     }
 
 
-def components(loads: Iterable[PointForce]) -> dict[str, Fraction]:
+def components(loads: LoadsAt) -> dict[str, Fraction]:
     """The components of all loads by their names; constants and expressions are named by their
     text.
     """
     return {
-        name: force for load in loads for name, force in zip(load.names, load.force, strict=True)
+        name: force
+        for load, forces in loads
+        for name, force in zip(load.names, forces, strict=True)
     }
 
 

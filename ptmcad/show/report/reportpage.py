@@ -202,8 +202,9 @@ def _work(model: Model) -> str:
     """What the energies of poses leave out, where moments work; empty where there are none, or no
     energies.
     """
-    steady = () if model.drawable is None else split_moments(model.drawable).steady
-    return moments_work(model, [moment.unknown for moment in steady])
+    if model.drawable is None or model.coupled:
+        return ""
+    return moments_work(model, [moment.unknown for moment in split_moments(model)[0]])
 
 
 def _declared(slice: Slice) -> dict[str, Any]:
