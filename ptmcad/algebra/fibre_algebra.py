@@ -17,6 +17,7 @@ from flint import (
     Ordering,
     arb,
     arb_poly,
+    ctx,
     fmpq,
     fmpq_mat,
     fmpq_poly,
@@ -31,7 +32,7 @@ from ptmcad.algebra.groebner import grevlex_key, shifted
 from ptmcad.algebra.membership import RationalPolynomial, Rules
 from ptmcad.algebra.polynomials import Monomial, integral
 from ptmcad.algebra.quotient_algebra import border_of, divided, standard_monomials
-from ptmcad.algebra.real_roots import RealRoot, newton_ball
+from ptmcad.algebra.real_roots import RealRoot, refine
 from ptmcad.errors import LimitReached
 
 
@@ -345,6 +346,36 @@ def unknowns_in_balls(
         return None if below.contains(0) else [p(ball) / below for p in numerators]
 
     return at
+
+
+_START_BITS = 16
+"""To which a root is refined before Newton's method."""
+
+
+def newton_ball(value: arb_poly, slope: arb_poly, root: RealRoot) -> arb:
+    """A ball around a root, about as narrow as the working precision allows, by the interval Newton
+    operator.
+
+    With a root in X and 0 not in p'(X), it lies in m - p(m) / p'(X) for any m in X, by the mean value
+    theorem (Moore, Interval Analysis, 1966). Where this proves no narrow ball the root is refined by
+    its own means.
+
+    Parameters
+    ----------
+    value, slope : the root's polynomial and its derivative in balls of that precision.
+    """
+    size = abs(root.middle) + 1
+    near = refine(root, size / 2**_START_BITS)
+    ball = near.ball
+    while not near.is_rational and not (steepness := slope(ball)).contains(0):
+        middle = ball.mid()
+        found = middle - value(middle) / steepness
+        if not 2 * found.rad() < ball.rad():
+            if ball.rad() * 2 ** (ctx.prec // 2) < abs(middle) + 1:
+                return ball
+            break
+        ball = found
+    return refine(near, size / fmpq(2) ** (ctx.prec - 8)).ball
 
 
 def hermite_matrix(algebra: FibreAlgebra, weight: fmpq_mat) -> fmpq_mat:

@@ -45,12 +45,11 @@ from ptmcad.exact.stages import (
     SliceProblem,
     counts_by_component,
     counts_of,
-    problem_of,
+    problem_without_free_lengths,
     variety_of,
 )
 from ptmcad.options import DEFAULTS, Options
-from ptmcad.question.domain import proved
-from ptmcad.question.slice import Slice, without_free_lengths
+from ptmcad.question.slice import Slice
 
 AREA_TOLERANCE = Fraction(1, 10_000)
 
@@ -110,9 +109,8 @@ def exact_map(slice: Slice, options: Options = DEFAULTS, known: Known | None = N
     LimitReached
         At the deadline, with what there is of the map as ``partial``.
     """
-    without_free_lengths(slice.model, slice.parameters, "an exact map is")
     clock = _Clock(options)
-    problem = problem_of(proved(slice))._replace(known=known)
+    problem = problem_without_free_lengths(slice, "an exact map is")._replace(known=known)
     reached: PartialMap | None = None
     try:
         for reached in _stages(problem, options, clock):

@@ -11,7 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from fractions import Fraction
-from itertools import pairwise
+from itertools import accumulate, pairwise
 from math import prod
 
 from flint import fmpq
@@ -20,10 +20,10 @@ from ptmcad.algebra.arcs import on_graph
 from ptmcad.algebra.polynomials import RationalUnivariate, UnivariatePolynomial
 from ptmcad.algebra.real_roots import (
     RealRoot,
-    disjoint,
     halve,
     inside,
     isolate,
+    numbered_disjoint,
     order,
     squarefree_part,
 )
@@ -144,24 +144,24 @@ def below(parts: RegionStacks, line: RationalUnivariate) -> RegionStacks:
     too.
     """
     ends = [stack.right.root for stack in parts.stacks if stack.right.root]
-    crossings = squarefree_part(
-        prod(
-            (q for c in parts.curves if (q := on_graph(c.in_v, line))),
-            start=UnivariatePolynomial([1]),
-        )
-    )
-    for polynomial in {id(r.polynomial): r.polynomial for r in ends}.values():
-        crossings //= crossings.gcd(polynomial)
-    roots = inside(disjoint([*ends, *isolate(crossings, *parts.base)]), parts.base)
-    places = [BaseEnd(parts.base[0], None, None), *(BaseEnd(r.middle, r, None) for r in roots)]
-    stacks, rows, number = [], [], 0
-    for left, right in pairwise([*places, BaseEnd(parts.base[1], None, None)]):
+    on_line = (q for c in parts.curves if (q := on_graph(c.in_v, line)))
+    crossings = squarefree_part(prod(on_line, start=UnivariatePolynomial([1])))
+    for k, end in enumerate(ends):
+        if k == 0 or end.polynomial != ends[k - 1].polynomial:
+            crossings //= crossings.gcd(end.polynomial)
+    numbered = numbered_disjoint([*ends, *isolate(crossings, *parts.base)])
+    cuts = inside([root for _, root in numbered], parts.base)
+    edges = [BaseEnd(edge, None, None) for edge in parts.base]
+    places = [edges[0], *(BaseEnd(cut.middle, cut, None) for cut in cuts), edges[1]]
+    # the numbers of the abscissae come first: behind each of them the next stack begins
+    begun = accumulate((number < len(ends) for number, _ in numbered), initial=0)
+    stacks, rows = [], []
+    for (left, right), number in zip(pairwise(places), begun, strict=True):
         walls, heights = parts.stacks[number].walls, parts.stacks[number].heights
         stack = _between(left, right, walls, heights)
         level = level_at(parts.curves, stack.sample, line(stack.sample), parts.fibre)
         stacks.append(stack._replace(walls=walls[:level], heights=heights[: level + 1]))
         rows.append(parts.regions[number][: level + 1])
-        number += right.root is not None and right.root.polynomial is not crossings
     return parts._replace(stacks=stacks, regions=rows, ceiling=line)
 
 

@@ -46,9 +46,13 @@ from ptmcad.exact.decomposition import (
     neighbours_of,
 )
 from ptmcad.exact.discriminant_variety import Known
-from ptmcad.exact.stages import SliceProblem, counts_by_component, decomposition_of, problem_of
-from ptmcad.question.domain import proved
-from ptmcad.question.slice import Slice, without_free_lengths
+from ptmcad.exact.stages import (
+    SliceProblem,
+    counts_by_component,
+    decomposition_of,
+    problem_without_free_lengths,
+)
+from ptmcad.question.slice import Slice
 from ptmcad.text.flint_numbers import from_fraction, simplest_between, to_fraction
 
 
@@ -88,8 +92,7 @@ def picture_of(
         When the slice is degenerate, has infinitely many equilibria, or leaves the domain of the
         geometry.
     """
-    without_free_lengths(slice.model, slice.parameters, "an arrangement is")
-    problem = problem_of(proved(slice))._replace(known=known)
+    problem = problem_without_free_lengths(slice, "an arrangement is")._replace(known=known)
     cut = decomposition_of(problem, base, check)
     crossings = crossings_of(cut, check=check)
     counts = counts_by_component(

@@ -35,7 +35,8 @@ from ptmcad.exact.models import ParametricSystem, system_counted
 from ptmcad.exact.models.system import SystemOnAxes, on_axes
 from ptmcad.exact.point_system import DegeneratePoint
 from ptmcad.model.involutions import Involution, involutions
-from ptmcad.question.slice import Slice
+from ptmcad.question.domain import proved
+from ptmcad.question.slice import Slice, without_free_lengths
 from ptmcad.text.flint_numbers import interval_of, to_fraction
 from ptmcad.text.numerals import short_text
 
@@ -111,6 +112,22 @@ class Cells(NamedTuple):
     cut: Decomposition
     counts: SampleCounts
     neighbours: Neighbours
+
+
+def problem_without_free_lengths(slice: Slice, task: str) -> SliceProblem:
+    """The problem of a slice, whose parameters are proved to have their signs.
+
+    Parameters
+    ----------
+    task : with a verb: what is refused where springs have a free length.
+
+    Raises
+    ------
+    ConfigError
+        When springs have a free length, or a parameter has another sign.
+    """
+    without_free_lengths(slice.model, slice.parameters, task)
+    return problem_of(proved(slice))
 
 
 def problem_of(slice: Slice) -> SliceProblem:
