@@ -11,7 +11,7 @@ from collections.abc import Iterator
 from ptmcad.answer.arrangement import SIDES
 from ptmcad.answer.counts import key_text
 from ptmcad.answer.words import index_words, noun
-from ptmcad.exact.decomposition import Link, members, merge
+from ptmcad.exact.cad.decomposition import Link, members, merge
 from ptmcad.exact.slicearrangement import Picture
 from ptmcad.text.numerals import text_of
 

@@ -19,10 +19,10 @@ from ptmcad.answer.regionmap import HARMLESS, Cell, Component, Region, RegionMap
 from ptmcad.ask.location import locate
 from ptmcad.cover.rectangles import Cover
 from ptmcad.errors import A_MAP, ConfigError, expect
-from ptmcad.exact.cad.area import region_areas
-from ptmcad.exact.decomposition import Decomposition, cut_along, members, seen_from
+from ptmcad.exact.areas.area import region_areas
+from ptmcad.exact.areas.regionareas import region_stacks
+from ptmcad.exact.cad.decomposition import Decomposition, cut_along, members, seen_from
 from ptmcad.exact.mapassembly import critical_values_of, stacks_of_cells
-from ptmcad.exact.regionareas import region_stacks
 from ptmcad.question.counts import Count
 from ptmcad.question.slice import Point
 from ptmcad.text.flint_numbers import interval_of

@@ -28,8 +28,9 @@ from time import perf_counter
 
 from ptmcad.answer.regionmap import RegionMap, Status
 from ptmcad.errors import LimitReached
+from ptmcad.exact.areas.regionareas import areas_of
 from ptmcad.exact.cad.crossings import Crossing
-from ptmcad.exact.decomposition import (
+from ptmcad.exact.cad.decomposition import (
     Decomposition,
     crossings_of,
     joined_cells,
@@ -39,7 +40,6 @@ from ptmcad.exact.decomposition import (
 )
 from ptmcad.exact.discriminant_variety import Known
 from ptmcad.exact.mapassembly import PartialMap, assemble
-from ptmcad.exact.regionareas import areas_of
 from ptmcad.exact.stages import (
     Cells,
     SliceProblem,

@@ -18,8 +18,7 @@ from ptmcad.algebra.real_roots import Window
 from ptmcad.algebra.resultants import Check, nothing
 from ptmcad.answer.counts import counted_by
 from ptmcad.errors import DegenerateSliceError, GeometryError, InfiniteSolutionsError
-from ptmcad.exact.counting import Equilibria, equilibria
-from ptmcad.exact.decomposition import (
+from ptmcad.exact.cad.decomposition import (
     Decomposition,
     Neighbours,
     Report,
@@ -30,6 +29,7 @@ from ptmcad.exact.decomposition import (
     seen_from,
     unreported,
 )
+from ptmcad.exact.counting import Equilibria, equilibria
 from ptmcad.exact.discriminant_variety import Known, check_hypotheses, discriminant_variety
 from ptmcad.exact.models import ParametricSystem, system_counted
 from ptmcad.exact.models.system import SystemOnAxes, on_axes
@@ -159,7 +159,7 @@ def variety_of(
         raise _explained(problem, error) from error
     if base is None and "axis-order" in without:
         base = 0
-    return seen_from(found.components, base, found.complex_solutions, found.excludes)
+    return seen_from(*found, base)
 
 
 def decomposition_of(

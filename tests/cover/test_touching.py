@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from ptmcad.cover.subdivision import connected
-from ptmcad.exact.decomposition import merge
+from ptmcad.exact.cad.decomposition import merge
 
 
 @given(

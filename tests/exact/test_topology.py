@@ -25,12 +25,12 @@ from ptmcad.algebra.curve_branches import TooFewBits
 from ptmcad.algebra.polynomials import PLANE, coefficients_in
 from ptmcad.algebra.puiseux import puiseux_integral
 from ptmcad.algebra.real_roots import has_root_between, isolate, sign_at, squarefree_part
-from ptmcad.exact.cad.area import RegionStacks, region_areas
+from ptmcad.exact.areas.area import RegionStacks, region_areas
+from ptmcad.exact.areas.regionareas import before, below
 from ptmcad.exact.cad.crossings import Separator, cross
+from ptmcad.exact.cad.decomposition import merge
 from ptmcad.exact.cad.projection import FibredCurve, curve, project
 from ptmcad.exact.cad.stacks import StackData, lift
-from ptmcad.exact.decomposition import merge
-from ptmcad.exact.regionareas import before, below
 from ptmcad.text.flint_numbers import from_fraction, to_fraction
 
 X, Y = PLANE.gens()

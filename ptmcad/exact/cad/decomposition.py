@@ -108,9 +108,9 @@ class Variety(NamedTuple):
 
 def seen_from(
     components: Sequence[Component],
-    base: int | None = None,
     complex_solutions: int = 0,
     excludes: bool = False,
+    base: int | None = None,
 ) -> Variety:
     """Components over a base axis; over that of the cheaper decomposition when None."""
     views = [curves_of(components, axis) for axis in (0, 1)]
