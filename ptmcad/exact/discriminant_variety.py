@@ -25,6 +25,7 @@ determinant because the latter also vanishes where the monomial basis degenerate
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
+from functools import partial
 from typing import Any, NamedTuple
 
 from ptmcad.algebra.bernstein import nowhere_zero
@@ -90,53 +91,63 @@ def discriminant_variety(
     InfiniteSolutionsError, DegenerateSliceError
         When every point of the slice is exceptional.
     """
-
-    def outside(factor: Coefficient) -> bool:
-        """Whether a curve is left out as it has no point in the window."""
-        return "no-real-points" not in without and nowhere_zero(factor, window)
-
     given = on.equations
-    found = None if known is None else known(given)
-    equations, algebra, rows, jacobian_norm = nondegenerate(given) if found is None else found
+    family = None if known is None else known(given)
+    found = nondegenerate(given) if family is None else family
+    equations, algebra = found.equations, found.algebra
+    outside = partial(_is_outside, window, "no-real-points" not in without)
     limits = irreducible_factors(*equations.boundary, *on.limits)
-    singular = irreducible_factors(jacobian_norm[0])
+    singular = irreducible_factors(found.jacobian_norm[0])
     escaping = [] if equations.is_compact else poles(algebra, singular, equations.unbounded)
     critical = [f for f in singular if f not in escaping]
     conditions = irreducible_factors(*sign_changes(equations, algebra))
-    denominator = irreducible_factors(multiplication_denominator(algebra))
-    suspects = [
-        f for f in denominator if not any(f in part for part in (limits, singular, conditions))
-    ]
-    # near proved ones the Jacobian's determinant stays away from zero; doubtful are the rest. Of
-    # these three parts only curves with a pole belong to the variety
-    hidden = [f for f in suspects if outside(f)]
-    visible = [f for f in suspects if f not in hidden]
-    tried = visible if settles(equations) and "infinity" not in without else []
-    proved = harmless(equations, rows, jacobian_norm, tried)
-    doubtful = [f for f in visible if f not in proved]
-    unbounded = poles(algebra, doubtful, equations.unbounded, [*hidden, *proved])
     superfluous = irreducible_factors(*_superfluous(on, equations, algebra, without))
-    components: dict[PlanePolynomial, Component] = {}
-    # of the kinds that a curve is of the first one stands
-    for factors, kind, why in (
+    parts = (
         (limits, Kind.BOUNDARY, ""),
         (critical, Kind.CRITICAL, ""),
         (escaping, Kind.INFINITY, ""),
         (conditions, Kind.BOUNDARY, ""),
-        ([f for f in hidden if f in unbounded], Kind.INFINITY, NO_POINT),
-        ([f for f in proved if f in unbounded], Kind.INFINITY, HARMLESS),
-        ([f for f in doubtful if f in unbounded], Kind.INFINITY, ""),
+        *_at_infinity(found, [*limits, *singular, *conditions], outside, without),
         (superfluous, Kind.AUXILIARY, ""),
-    ):
+    )
+    component_of: dict[PlanePolynomial, Component] = {}
+    for factors, kind, why in parts:
         for f in factors:
             polynomial = to_plane(f)
-            if polynomial in components:
-                continue
-            reason = why or (NO_POINT if outside(f) else "")
-            where = None if reason else continuum(f, on, given, jacobian_norm[0])
-            components[polynomial] = Component(polynomial, kind, reason, continuum=where)
-    ordered = tuple(sorted(components.values(), key=_place))
-    return ordered, algebra.dimension, equations.unknowns > given.unknowns
+            if polynomial not in component_of:  # the first kind of a curve stands
+                left_out = why or (NO_POINT if outside(f) else "")
+                where = None if left_out else continuum(f, on, given, found.jacobian_norm[0])
+                component_of[polynomial] = Component(polynomial, kind, left_out, continuum=where)
+    components = tuple(sorted(component_of.values(), key=_place))
+    return components, algebra.dimension, equations.unknowns > given.unknowns
+
+
+def _is_outside(window: Window, is_tried: bool, factor: Coefficient) -> bool:
+    """Whether a curve is seen to have no point in the window."""
+    return is_tried and nowhere_zero(factor, window)
+
+
+def _at_infinity(
+    found: Nondegenerate,
+    others: Sequence[Coefficient],
+    outside: Callable[[Coefficient], bool],
+    without: frozenset[str],
+) -> Iterator[tuple[list[Coefficient], Kind, str]]:
+    """The curves, none of the others, on which complex solutions alone leave every bounded set, by
+    why they are left out, if they are.
+    """
+    equations, algebra = found.equations, found.algebra
+    denominator = irreducible_factors(multiplication_denominator(algebra))
+    suspects = [f for f in denominator if f not in others]
+    hidden = [f for f in suspects if outside(f)]
+    visible = [f for f in suspects if f not in hidden]
+    # near proved ones the Jacobian's determinant stays away from zero; doubtful are the rest
+    tried = visible if settles(equations) and "infinity" not in without else []
+    proved = harmless(equations, found.rows, found.jacobian_norm, tried)
+    doubtful = [f for f in visible if f not in proved]
+    unbounded = poles(algebra, doubtful, equations.unbounded, [*hidden, *proved])
+    for factors, why in ((hidden, NO_POINT), (proved, HARMLESS), (doubtful, "")):
+        yield [f for f in factors if f in unbounded], Kind.INFINITY, why
 
 
 def _place(c: Component) -> tuple[Any, ...]:
