@@ -28,7 +28,7 @@ from flint import (
     fmpz_poly,
 )
 
-from ptmcad.algebra.groebner import grevlex_key, shifted
+from ptmcad.algebra.groebner import grevlex_key, powers_of, shifted
 from ptmcad.algebra.membership import RationalPolynomial, Rules
 from ptmcad.algebra.polynomials import Monomial, integral
 from ptmcad.algebra.quotient_algebra import border_of, divided, standard_monomials
@@ -177,14 +177,8 @@ def _normal_forms(basis: Sequence[Monomial], rules: Rules) -> dict[Monomial, lis
 def evaluate(algebra: FibreAlgebra, p: RationalPolynomial) -> fmpq_mat:
     """The matrix of multiplication by a polynomial in the unknowns, or in the first of them."""
     size = algebra.dimension
-    total = fmpq_mat(size, size)
-    for monomial, c in p.items():
-        term = scalar_matrix(size, c)
-        for matrix, e in zip(algebra.multiplication, monomial, strict=False):
-            for _ in range(e):
-                term = matrix * term
-        total = total + term
-    return total
+    power = powers_of(algebra.multiplication, scalar_matrix(size, fmpq(1)))
+    return sum((power(monomial) * c for monomial, c in p.items()), fmpq_mat(size, size))
 
 
 def scalar_matrix(size: int, value: fmpq) -> fmpq_mat:
@@ -315,16 +309,8 @@ def _basis_traces(algebra: FibreAlgebra) -> tuple[fmpz_mat, fmpz]:
     denominator.
     """
     size = algebra.dimension
-    products: dict[Monomial, fmpq_mat] = {}
-    traces = [fmpq(size)][:size]  # of no solution there is none
-    for monomial in algebra.basis[
-        1:
-    ]:  # a divisor of a basis monomial is one too, and comes before it
-        k = next(k for k, e in enumerate(monomial) if e)
-        rest = shifted(monomial, k, -1)
-        step = algebra.multiplication[k]
-        products[monomial] = products[rest] * step if any(rest) else step
-        traces.append(sum(products[monomial].entries()[:: size + 1], fmpq(0)))
+    power = powers_of(algebra.multiplication, scalar_matrix(size, fmpq(1)))
+    traces = [sum(power(m).entries()[:: size + 1], fmpq(0)) for m in algebra.basis]
     row, denominator = fmpq_mat(1, size, traces).numer_denom()
     return row, denominator
 
@@ -388,7 +374,8 @@ def hermite_matrix(algebra: FibreAlgebra, weight: fmpq_mat) -> fmpq_mat:
     size = algebra.dimension
     row, denominator = _basis_traces(algebra)
     # column j of a multiplication is the normal form of its element times b_j
-    products = [evaluate(algebra, {m: fmpq(1)}).transpose() for m in algebra.basis]
+    power = powers_of(algebra.multiplication, scalar_matrix(size, fmpq(1)))
+    products = [power(m).transpose() for m in algebra.basis]
     traces = fmpq_mat(row).transpose() / denominator
     traces_of_products = fmpq_mat(size, size, [t for m in products for t in (m * traces).entries()])
     # the first basis monomial is 1, so the first column is the weight's own normal form

@@ -230,14 +230,11 @@ def avoids(p: fmpz_poly | arb_poly, low: fmpq, high: fmpq) -> bool:
 
 
 def is_root_of(divisor: fmpz_poly, root: RealRoot) -> bool:
-    """Whether a divisor of the root's polynomial has the root too."""
-    if divisor.degree() < 1:
-        return False
-    return (
-        not sign_at(divisor, root.low)
-        if root.is_rational
-        else has_root_between(divisor, root.low, root.high)
-    )
+    """Whether a divisor of the root's polynomial has the root too: it is simple, and no end of its
+    interval is another one.
+    """
+    at_low = sign_at(divisor, root.low)
+    return at_low == 0 if root.is_rational else at_low != sign_at(divisor, root.high)
 
 
 def vanishes_at(p: fmpz_poly, root: RealRoot) -> bool:
