@@ -28,7 +28,7 @@ from flint import (
     fmpz_poly,
 )
 
-from ptmcad.algebra.groebner import grevlex_key, powers_of, shifted
+from ptmcad.algebra.groebner import grevlex_key, powers_of, raised
 from ptmcad.algebra.membership import RationalPolynomial, Rules
 from ptmcad.algebra.polynomials import Monomial, integral
 from ptmcad.algebra.quotient_algebra import border_of, divided, standard_monomials
@@ -83,7 +83,7 @@ def bezout_bound(equations: Sequence[RationalPolynomial]) -> int:
     return math.prod(max(map(sum, e), default=0) or 1 for e in equations)
 
 
-def fibre(
+def own_quotient(
     equations: Sequence[RationalPolynomial], unknowns: int, most: WorkLimit | None = None
 ) -> FibreAlgebra | None:
     """The quotient by the given equations; None when there are infinitely many complex solutions.
@@ -136,7 +136,7 @@ def fibre_of_rules(rules: Rules, basis: tuple[Monomial, ...], unknowns: int) -> 
     size = len(basis)
     matrices = []
     for k in range(unknowns):
-        columns = [normal_forms[shifted(m, k)] for m in basis]
+        columns = [normal_forms[raised(m, k)] for m in basis]
         matrices.append(fmpq_mat(size, size, [c for column in columns for c in column]).transpose())
     return FibreAlgebra(basis, tuple(matrices))
 
@@ -163,7 +163,7 @@ def _normal_forms(basis: Sequence[Monomial], rules: Rules) -> dict[Monomial, lis
             k, below = divided(m, border)
             for n, c in zip(basis, table[below], strict=True):
                 if c:
-                    image = shifted(n, k)
+                    image = raised(n, k)
                     if image in position:
                         row[position[image]] += c
                     else:
@@ -232,10 +232,10 @@ def univariate_representation(
     size, count = algebra.dimension, len(algebra.multiplication)
     different = size if not multiple else None
     for trial in range(1, size * (size - 1) // 2 * (count - 1) + 2):
-        weights = tuple(trial**k for k in range(count))  # points on a moment curve
+        form_coefficients = tuple(trial**k for k in range(count))  # points on a moment curve
         form = fmpq_mat(size, size)
-        for matrix, weight in zip(algebra.multiplication, weights, strict=True):
-            form = form + (matrix if weight == 1 else matrix * fmpq(weight))
+        for matrix, c in zip(algebra.multiplication, form_coefficients, strict=True):
+            form = form + (matrix if c == 1 else matrix * fmpq(c))
         # in integers over common denominators: reducing every fraction on the way would take most
         # of the time
         step, denominator = form.numer_denom()
@@ -246,13 +246,15 @@ def univariate_representation(
             different = hermite_matrix(algebra, scalar_matrix(size, fmpq(1))).rank()
         if degree not in (size, different):
             continue
-        return _represented(algebra, weights, (step, denominator), characteristic, radical)
+        return _represented(
+            algebra, form_coefficients, (step, denominator), characteristic, radical
+        )
     return None
 
 
 def _represented(
     algebra: FibreAlgebra,
-    weights: tuple[int, ...],
+    form_coefficients: tuple[int, ...],
     form: tuple[fmpz_mat, fmpz],
     characteristic: fmpz_poly,
     radical: fmpz_poly,
@@ -261,7 +263,7 @@ def _represented(
 
     Parameters
     ----------
-    weights : of the unknowns in the form.
+    form_coefficients : of the unknowns in the form.
     form : the matrix of multiplication by it, times a denominator, and this.
     characteristic : of that matrix.
     radical : its squarefree part.
@@ -295,7 +297,7 @@ def _represented(
         minimal // minimal.content(),
         tuple(coordinates),
         slope,
-        weights,
+        form_coefficients,
         whole // whole.content(),
     )
 

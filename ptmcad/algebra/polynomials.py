@@ -216,7 +216,7 @@ def evaluate(p: fmpz_mpoly, *at: fmpq) -> fmpq:
     return sum((math.prod(factors, start=c) for c, factors in terms), fmpq(0))
 
 
-def shifted(rows: Sequence[Any], by: Any, number: int | None = None) -> list[Any]:
+def translated(rows: Sequence[Any], by: Any, number: int | None = None) -> list[Any]:
     """The coefficients of p(by + w) by w, from those of p(w): all, or so many first ones."""
     found = list(rows)
     number = len(found) if number is None else number
@@ -237,7 +237,7 @@ def local_coefficients(
     first ones.
     """
     line = arb_poly([arb(middle), arb(radius)])
-    return shifted([arb_poly(c)(line) for c in in_v], arb(origin), number)
+    return translated([arb_poly(c)(line) for c in in_v], arb(origin), number)
 
 
 class Restrictions:

@@ -13,7 +13,7 @@ timed.
 | areas      | `regionareas.areas_of`           | `stages.Areas`                          |
 |            | `mapassembly.assemble`           | `answer.regionmap.RegionMap`            |
 
-With `Options.sparing` adjacency comes before counts, and `stages.counts_by_component` makes these.
+With `Options.sparing` adjacency comes before counts, and `stages.counts_of_parts` makes these.
 
 Guarantee: the map is exact (`Status.EXACT`): no step decides anything by rounding without an error
 bound.
@@ -43,8 +43,8 @@ from ptmcad.exact.mapassembly import PartialMap, assemble
 from ptmcad.exact.stages import (
     Cells,
     SliceProblem,
-    counts_by_component,
     counts_of,
+    counts_of_parts,
     problem_without_free_lengths,
     variety_of,
 )
@@ -154,7 +154,7 @@ def _counted(
         if stage == "adjacency":
             crossings = crossings_of(cut, report, clock.check)
         elif options.sparing:
-            counts = counts_by_component(problem, cut, joined_cells(cut, crossings), report)
+            counts = counts_of_parts(problem, cut, joined_cells(cut, crossings), report)
         else:
             counts = counts_of(problem, cut, report)
         clock.stage(stage)

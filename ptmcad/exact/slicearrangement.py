@@ -36,7 +36,7 @@ from ptmcad.exact.cad.stacks import StackData, heights_between, level_at
 from ptmcad.exact.discriminant_variety import Known
 from ptmcad.exact.stages import (
     SliceProblem,
-    counts_by_component,
+    counts_of_parts,
     decomposition_of,
     problem_without_free_lengths,
 )
@@ -82,7 +82,7 @@ def picture_of(
     problem = problem_without_free_lengths(slice, "an arrangement is")._replace(known=known)
     cut = decomposition_of(problem, base, check)
     crossings = crossings_of(cut, check=check)
-    counts = counts_by_component(
+    counts = counts_of_parts(
         problem, cut, joined_cells(cut, crossings), lambda _done, _total: check()
     )
     neighbours = neighbours_of(cut, counts.keys, crossings)
@@ -121,7 +121,7 @@ def _levels_at(
 
     Not all cells reach the edge along an arc: two walls may end in one point of it.
     """
-    product = prod((c.fibre(edge) for c in curves), start=UnivariatePolynomial([1]))
+    product = prod((c.polynomial_over(edge) for c in curves), start=UnivariatePolynomial([1]))
     roots = disjoint(isolate(squarefree_part(product), *fibre))
     levels = []
     for height in heights_between(roots, fibre):

@@ -250,24 +250,24 @@ def count_at(where: str, on: SystemOnAxes, at: Sequence[fmpq]) -> Equilibria:
         ) from error
 
 
-def counts_by_component(
+def counts_of_parts(
     problem: SliceProblem,
     cut: Decomposition,
-    component_of: Sequence[int],
+    part_of: Sequence[int],
     report: Report = unreported,
 ) -> SampleCounts:
-    """The counts of every cell, and the equilibria at one sample of each component, the sample with
+    """The counts of every cell, and the equilibria at one sample of each part, the sample with
     the shortest numbers.
 
     Parameters
     ----------
-    component_of : of each cell, the connected part of the variety's complement, as in
+    part_of : of each cell, the connected part of the variety's complement, as in
         `joined_cells`.
     """
     found: dict[int, Equilibria] = {}
-    components = members(component_of)
-    for k, cells in enumerate(components):
-        report(k, len(components))
+    parts = members(part_of)
+    for k, cells in enumerate(parts):
+        report(k, len(parts))
         first = min(cells, key=lambda n: _length(cut.points[n]))
         there = problem.solved_at(cut.points[first])
         for n in cells:

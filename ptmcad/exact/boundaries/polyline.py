@@ -253,7 +253,7 @@ def _goes_on(wall: WallBranch, end: Span, number: int) -> bool:
     """
     if end[0] != end[1] or end[0] not in (0, 1):
         return False
-    p = wall.curve.fibre(wall.base[int(end[0])])
+    p = wall.curve.polynomial_over(wall.base[int(end[0])])
     if any(sign_at(p, v) == 0 for v in wall.fibre) or p.gcd(p.derivative()).degree() > 0:
         return False
     return len(isolate(p, *wall.fibre)) == number

@@ -103,7 +103,9 @@ def lift(
     for left, right in pairwise(ends):
         sample = _simplest_off(left.high, right.low, lines)
         roots = roots_over(curves, sample, fibre)
-        heights = heights_between([r for _, r in roots], fibre, [c.fibre(sample) for c in avoided])
+        heights = heights_between(
+            [r for _, r in roots], fibre, [c.polynomial_over(sample) for c in avoided]
+        )
         stacks.append(StackData(left, right, sample, tuple(w for w, _ in roots), heights))
     return tuple(stacks)
 
@@ -128,4 +130,4 @@ def _simplest_off(low: fmpq, high: fmpq, avoided: Sequence[UnivariatePolynomial]
 
 def level_at(curves: Sequence[FibredCurve], u: fmpq, v: fmpq, fibre: Interval) -> int:
     """The number of walls below a point, over an abscissa that is not critical."""
-    return sum(len(isolate(c.fibre(u), fibre[0], v)) for c in curves)
+    return sum(len(isolate(c.polynomial_over(u), fibre[0], v)) for c in curves)

@@ -28,7 +28,7 @@ from ptmcad.ask.location import component_cells
 from ptmcad.cover.subdivision import COVERED, FREE, repeated
 from ptmcad.errors import LimitReached
 from ptmcad.exact.boundaries.polyline import WallPolyline, chains, critical_shares
-from ptmcad.exact.cad.decomposition import merge
+from ptmcad.exact.cad.decomposition import region_numbers
 from ptmcad.text.numerals import decimal
 
 Floats = NDArray[np.float64]
@@ -148,7 +148,9 @@ def truth(
     """What separates regions when each cell shows a number; `ends` are those of the stacks' parts
     of the base.
     """
-    region_of = merge(shown, [(a.first, a.second, a.component) for a in result.adjacencies])
+    region_of = region_numbers(
+        shown, [(a.first, a.second, a.component) for a in result.adjacencies]
+    )
     counts = dict(zip(region_of, shown, strict=True))
     stacks = []
     for stack, of_stack, (left, right) in zip(result.stacks, lines, pairwise(ends), strict=True):
