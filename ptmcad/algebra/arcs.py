@@ -55,8 +55,8 @@ def arc_integral(
     )  # short, as all starts from it
     left, here, right = (_rounded(branch(middle + radius * x), unit) for x in NODES)
     slope = (right - left) / (NODES[2] - NODES[0])
-    bend = (left + right - 2 * here) / (2 * NODES[2] ** 2)
-    arc = fmpq_poly([here, slope, bend])
+    curvature = (left + right - 2 * here) / (2 * NODES[2] ** 2)
+    arc = fmpq_poly([here, slope, curvature])
     miss = abs(_rounded(branch(middle + radius * PROBE), unit) - arc(PROBE)) + unit
     along = fmpq_poly([middle, radius])
     rows = [fmpq_poly(c)(along) for c in in_v]
@@ -68,7 +68,7 @@ def arc_integral(
             has_root_between(on_graph(rows, arc + end), fmpq(-1), fmpq(1))
             for end in (-distance, distance)
         ):
-            mean = here + bend / 3
+            mean = here + curvature / 3
             return (arb(mean) + arb(distance) * arb(0, 1)) * arb(2 * radius)
     return None
 

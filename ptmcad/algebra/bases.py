@@ -15,7 +15,7 @@ from ptmcad.algebra.fibre_algebra import (
     FibreAlgebra,
     WorkLimit,
     bezout_bound,
-    fibre,
+    own_quotient,
 )
 from ptmcad.algebra.membership import RationalPolynomial
 from ptmcad.errors import LimitReached, PtmcadWarning
@@ -67,9 +67,9 @@ def quotient(
         large.
     """
     if not is_large(equations) or (most is not None and not most.by_msolve):
-        return fibre(equations, unknowns, most)
+        return own_quotient(equations, unknowns, most)
     try:
-        return fibre(equations, unknowns, SMALL if most is None else most)
+        return own_quotient(equations, unknowns, SMALL if most is None else most)
     except LimitReached:
         largest = None if most is None else most.by_msolve
     from ptmcad.algebra import msolve
@@ -80,11 +80,11 @@ def quotient(
         if most is not None:
             raise LimitReached(f"{what}; {MISSING}")
         warnings.warn(f"{what}, and may take very long; {MISSING}", PtmcadWarning, stacklevel=2)
-        return fibre(equations, unknowns)
+        return own_quotient(equations, unknowns)
     try:
         return quotient_by_msolve(equations, unknowns, SECONDS, largest)
     except msolve.MsolveError as error:
         warnings.warn(f"{error}; its basis is not used", PtmcadWarning, stacklevel=2)
     if most is not None:
         raise LimitReached("the basis of the equations grows beyond what is counted at once")
-    return fibre(equations, unknowns)
+    return own_quotient(equations, unknowns)

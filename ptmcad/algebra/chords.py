@@ -107,10 +107,10 @@ def slope_over(
         spread = norms[1] - abs(local[1][0])
         reach = arb(root.high - root.low)
         for _ in range(60):
-            bend, power = arb(0), reach
+            higher, power = arb(0), reach
             for i in range(2, len(local)):
-                bend, power = bend + i * norms[i] * power, power * reach
-            least = (abs(local[1][0]) - spread - bend).lower()
+                higher, power = higher + i * norms[i] * power, power * reach
+            least = (abs(local[1][0]) - spread - higher).lower()
             if not least > 0:
                 return None
             near = (norms[0] / least).upper()

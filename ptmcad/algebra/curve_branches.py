@@ -274,11 +274,11 @@ def _proved(
     reach = _norm(series) + tube
     if not 2 * size * _derivative_bound(local, 2, reach) * tube < least:
         # a finer bound: the second derivative along z itself, and the third in the tube
-        bend = (
+        second = (
             _norm(scale * _second_along(local, series))
             + size * _derivative_bound(local, 3, reach) * tube
         )
-        if not 2 * bend * tube < least:
+        if not 2 * second * tube < least:
             return None
     return near, tube
 

@@ -17,6 +17,7 @@ from flint import (
     Ordering,
     arb,
     arb_poly,
+    ctx,
     fmpq,
     fmpq_mat,
     fmpq_poly,
@@ -27,11 +28,11 @@ from flint import (
     fmpz_poly,
 )
 
-from ptmcad.algebra.groebner import grevlex_key, shifted
+from ptmcad.algebra.groebner import grevlex_key, powers_of, raised
 from ptmcad.algebra.membership import RationalPolynomial, Rules
 from ptmcad.algebra.polynomials import Monomial, integral
 from ptmcad.algebra.quotient_algebra import border_of, divided, standard_monomials
-from ptmcad.algebra.real_roots import RealRoot, newton_ball
+from ptmcad.algebra.real_roots import RealRoot, refine
 from ptmcad.errors import LimitReached
 
 
@@ -82,7 +83,7 @@ def bezout_bound(equations: Sequence[RationalPolynomial]) -> int:
     return math.prod(max(map(sum, e), default=0) or 1 for e in equations)
 
 
-def fibre(
+def own_quotient(
     equations: Sequence[RationalPolynomial], unknowns: int, most: WorkLimit | None = None
 ) -> FibreAlgebra | None:
     """The quotient by the given equations; None when there are infinitely many complex solutions.
@@ -135,7 +136,7 @@ def fibre_of_rules(rules: Rules, basis: tuple[Monomial, ...], unknowns: int) -> 
     size = len(basis)
     matrices = []
     for k in range(unknowns):
-        columns = [normal_forms[shifted(m, k)] for m in basis]
+        columns = [normal_forms[raised(m, k)] for m in basis]
         matrices.append(fmpq_mat(size, size, [c for column in columns for c in column]).transpose())
     return FibreAlgebra(basis, tuple(matrices))
 
@@ -162,7 +163,7 @@ def _normal_forms(basis: Sequence[Monomial], rules: Rules) -> dict[Monomial, lis
             k, below = divided(m, border)
             for n, c in zip(basis, table[below], strict=True):
                 if c:
-                    image = shifted(n, k)
+                    image = raised(n, k)
                     if image in position:
                         row[position[image]] += c
                     else:
@@ -176,14 +177,8 @@ def _normal_forms(basis: Sequence[Monomial], rules: Rules) -> dict[Monomial, lis
 def evaluate(algebra: FibreAlgebra, p: RationalPolynomial) -> fmpq_mat:
     """The matrix of multiplication by a polynomial in the unknowns, or in the first of them."""
     size = algebra.dimension
-    total = fmpq_mat(size, size)
-    for monomial, c in p.items():
-        term = scalar_matrix(size, c)
-        for matrix, e in zip(algebra.multiplication, monomial, strict=False):
-            for _ in range(e):
-                term = matrix * term
-        total = total + term
-    return total
+    power = powers_of(algebra.multiplication, scalar_matrix(size, fmpq(1)))
+    return sum((power(monomial) * c for monomial, c in p.items()), fmpq_mat(size, size))
 
 
 def scalar_matrix(size: int, value: fmpq) -> fmpq_mat:
@@ -237,10 +232,10 @@ def univariate_representation(
     size, count = algebra.dimension, len(algebra.multiplication)
     different = size if not multiple else None
     for trial in range(1, size * (size - 1) // 2 * (count - 1) + 2):
-        weights = tuple(trial**k for k in range(count))  # points on a moment curve
+        form_coefficients = tuple(trial**k for k in range(count))  # points on a moment curve
         form = fmpq_mat(size, size)
-        for matrix, weight in zip(algebra.multiplication, weights, strict=True):
-            form = form + (matrix if weight == 1 else matrix * fmpq(weight))
+        for matrix, c in zip(algebra.multiplication, form_coefficients, strict=True):
+            form = form + (matrix if c == 1 else matrix * fmpq(c))
         # in integers over common denominators: reducing every fraction on the way would take most
         # of the time
         step, denominator = form.numer_denom()
@@ -251,13 +246,15 @@ def univariate_representation(
             different = hermite_matrix(algebra, scalar_matrix(size, fmpq(1))).rank()
         if degree not in (size, different):
             continue
-        return _represented(algebra, weights, (step, denominator), characteristic, radical)
+        return _represented(
+            algebra, form_coefficients, (step, denominator), characteristic, radical
+        )
     return None
 
 
 def _represented(
     algebra: FibreAlgebra,
-    weights: tuple[int, ...],
+    form_coefficients: tuple[int, ...],
     form: tuple[fmpz_mat, fmpz],
     characteristic: fmpz_poly,
     radical: fmpz_poly,
@@ -266,7 +263,7 @@ def _represented(
 
     Parameters
     ----------
-    weights : of the unknowns in the form.
+    form_coefficients : of the unknowns in the form.
     form : the matrix of multiplication by it, times a denominator, and this.
     characteristic : of that matrix.
     radical : its squarefree part.
@@ -300,7 +297,7 @@ def _represented(
         minimal // minimal.content(),
         tuple(coordinates),
         slope,
-        weights,
+        form_coefficients,
         whole // whole.content(),
     )
 
@@ -314,16 +311,8 @@ def _basis_traces(algebra: FibreAlgebra) -> tuple[fmpz_mat, fmpz]:
     denominator.
     """
     size = algebra.dimension
-    products: dict[Monomial, fmpq_mat] = {}
-    traces = [fmpq(size)][:size]  # of no solution there is none
-    for monomial in algebra.basis[
-        1:
-    ]:  # a divisor of a basis monomial is one too, and comes before it
-        k = next(k for k, e in enumerate(monomial) if e)
-        rest = shifted(monomial, k, -1)
-        step = algebra.multiplication[k]
-        products[monomial] = products[rest] * step if any(rest) else step
-        traces.append(sum(products[monomial].entries()[:: size + 1], fmpq(0)))
+    power = powers_of(algebra.multiplication, scalar_matrix(size, fmpq(1)))
+    traces = [sum(power(m).entries()[:: size + 1], fmpq(0)) for m in algebra.basis]
     row, denominator = fmpq_mat(1, size, traces).numer_denom()
     return row, denominator
 
@@ -347,6 +336,36 @@ def unknowns_in_balls(
     return at
 
 
+_START_BITS = 16
+"""To which a root is refined before Newton's method."""
+
+
+def newton_ball(value: arb_poly, slope: arb_poly, root: RealRoot) -> arb:
+    """A ball around a root, about as narrow as the working precision allows, by the interval Newton
+    operator.
+
+    With a root in X and 0 not in p'(X), it lies in m - p(m) / p'(X) for any m in X, by the mean value
+    theorem (Moore, Interval Analysis, 1966). Where this proves no narrow ball the root is refined by
+    its own means.
+
+    Parameters
+    ----------
+    value, slope : the root's polynomial and its derivative in balls of that precision.
+    """
+    size = abs(root.middle) + 1
+    near = refine(root, size / 2**_START_BITS)
+    ball = near.ball
+    while not near.is_rational and not (steepness := slope(ball)).contains(0):
+        middle = ball.mid()
+        found = middle - value(middle) / steepness
+        if not 2 * found.rad() < ball.rad():
+            if ball.rad() * 2 ** (ctx.prec // 2) < abs(middle) + 1:
+                return ball
+            break
+        ball = found
+    return refine(near, size / fmpq(2) ** (ctx.prec - 8)).ball
+
+
 def hermite_matrix(algebra: FibreAlgebra, weight: fmpq_mat) -> fmpq_mat:
     """The matrix trace(weight b_i b_j), weight being a multiplication matrix.
 
@@ -357,7 +376,8 @@ def hermite_matrix(algebra: FibreAlgebra, weight: fmpq_mat) -> fmpq_mat:
     size = algebra.dimension
     row, denominator = _basis_traces(algebra)
     # column j of a multiplication is the normal form of its element times b_j
-    products = [evaluate(algebra, {m: fmpq(1)}).transpose() for m in algebra.basis]
+    power = powers_of(algebra.multiplication, scalar_matrix(size, fmpq(1)))
+    products = [power(m).transpose() for m in algebra.basis]
     traces = fmpq_mat(row).transpose() / denominator
     traces_of_products = fmpq_mat(size, size, [t for m in products for t in (m * traces).entries()])
     # the first basis monomial is 1, so the first column is the weight's own normal form

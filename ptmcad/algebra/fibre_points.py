@@ -13,7 +13,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from flint import fmpq, fmpq_poly, fmpz_poly
+from flint import fmpq, fmpq_poly
 
 from ptmcad.algebra.descartes import root_bound
 from ptmcad.algebra.fibre_algebra import (
@@ -22,7 +22,7 @@ from ptmcad.algebra.fibre_algebra import (
 )
 from ptmcad.algebra.membership import RationalPolynomial
 from ptmcad.algebra.number_field import Expression, FieldElement, Modulus, RealField, polynomial_at
-from ptmcad.algebra.real_roots import RealRoot, isolate, sign_at
+from ptmcad.algebra.real_roots import RealRoot, is_root_of, isolate
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,7 +55,7 @@ def points(algebra: FibreAlgebra, bound: int | None = 1) -> tuple[list[RealPoint
     coordinates: dict[int, tuple[Modulus, list[Expression]]] = {}
     found = []
     for root in isolate(radical, -limit, limit):
-        number = next(n for n, (factor, _) in enumerate(factors) if _owns(factor, root))
+        number = next(n for n, (factor, _) in enumerate(factors) if is_root_of(factor, root))
         factor, multiplicity = factors[number]
         interval = RealRoot(factor, root.low, root.high)
         if number not in coordinates:
@@ -81,10 +81,3 @@ def _coordinates(field: RealField, numerators: Sequence[fmpq_poly]) -> list[Expr
     first, *others = map(field.element, numerators)
     inverse = first.inverse()  # it vanishes at no point of the fibre
     return [(other * inverse).expression for other in others]
-
-
-def _owns(factor: fmpz_poly, root: RealRoot) -> bool:
-    """Whether the only root in an isolating interval of a product is one of this factor's."""
-    if root.is_rational:
-        return sign_at(factor, root.low) == 0
-    return sign_at(factor, root.low) != sign_at(factor, root.high)

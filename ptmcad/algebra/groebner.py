@@ -99,7 +99,7 @@ def groebner_basis(generators: Sequence[UnknownPolynomial], order: Order) -> Gro
     return _reduced(basis, order, removed)
 
 
-def shifted(monomial: Monomial, k: int, by: int = 1) -> Monomial:
+def raised(monomial: Monomial, k: int, by: int = 1) -> Monomial:
     """The monomial times the unknown number k to the power ``by``."""
     return (*monomial[:k], monomial[k] + by, *monomial[k + 1 :])
 
@@ -117,7 +117,7 @@ def powers_of(factors: Sequence[Any], one: Any) -> Callable[[Monomial], Any]:
     def power(monomial: Monomial) -> Any:
         if monomial not in known:
             k = next((k for k, e in enumerate(monomial) if e), None)
-            known[monomial] = one if k is None else factors[k] * power(shifted(monomial, k, -1))
+            known[monomial] = one if k is None else factors[k] * power(raised(monomial, k, -1))
         return known[monomial]
 
     return power

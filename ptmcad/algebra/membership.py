@@ -21,7 +21,7 @@ from typing import Any, NamedTuple
 
 from flint import fmpq, fmpq_mat, nmod, nmod_mat
 
-from ptmcad.algebra.groebner import grevlex_key, shifted
+from ptmcad.algebra.groebner import grevlex_key, raised
 from ptmcad.algebra.polynomials import Monomial
 from ptmcad.algebra.resultants import Check, primes
 
@@ -98,7 +98,7 @@ def _level(width: int, degree: int, proved: Rules, staircase: frozenset[Monomial
     every = sorted((m for d in range(degree + 1) for m in _monomials(width, d)), key=grevlex_key)
     divisible: set[Monomial] = set()
     for m in every:
-        if m in proved or any(m[k] and shifted(m, k, -1) in divisible for k in range(width)):
+        if m in proved or any(m[k] and raised(m, k, -1) in divisible for k in range(width)):
             divisible.add(m)
     columns = [m for m in reversed(every) if m not in divisible and m not in staircase]
     return _Level(degree, proved, tuple(every), tuple(columns))
@@ -223,13 +223,13 @@ class _Reduction:
             return {n: self._number(c) for n, c in level.proved[m].items()}
         for k, e in enumerate(m):
             if e:
-                below = self._table[shifted(m, k, -1)]
+                below = self._table[raised(m, k, -1)]
                 if (
-                    len(below) != 1 or shifted(m, k, -1) not in below
+                    len(below) != 1 or raised(m, k, -1) not in below
                 ):  # it is reducible, and so is its multiple
                     total: _Sparse = {}
                     for n, c in below.items():
-                        self._add(total, self._table[shifted(n, k)], c)
+                        self._add(total, self._table[raised(n, k)], c)
                     return {n: c for n, c in total.items() if c}
         return {m: self._number(fmpq(1))}
 

@@ -99,19 +99,17 @@ def common_factor(polynomials: Iterable[fmpz_mpoly]) -> fmpz_mpoly:
 def irreducible_factors(*polynomials: Coefficient) -> list[Coefficient]:
     """The different irreducible factors over Q that are not constant, primitive and without
     multiplicity.
-    """
-    return list({str(f): f for p in polynomials for f, _ in factors_with_multiplicity(p)}.values())
-
-
-def factors_with_multiplicity(p: Coefficient) -> list[tuple[Coefficient, int]]:
-    """The irreducible factors over Q that are not constant, primitive, each with its multiplicity.
 
     The factorisation goes through polynomials over Q, because python-flint 0.9 sorts the factors
     over Z by coefficients as machine integers and raises OverflowError for longer ones.
     """
-    ring = p.context()
-    over_q = fmpq_mpoly_ctx.get(ring.names(), Ordering.degrevlex).from_dict(p.to_dict())
-    return [(_primitive(factor, ring), int(power)) for factor, power in over_q.factor()[1]]
+    found: dict[str, Coefficient] = {}
+    for p in polynomials:
+        ring = p.context()
+        over_q = fmpq_mpoly_ctx.get(ring.names(), Ordering.degrevlex).from_dict(p.to_dict())
+        factors = [_primitive(factor, ring) for factor, _ in over_q.factor()[1]]
+        found |= {str(factor): factor for factor in factors}
+    return list(found.values())
 
 
 def multiplicity(p: Coefficient, factor: Coefficient) -> int:
@@ -218,21 +216,7 @@ def evaluate(p: fmpz_mpoly, *at: fmpq) -> fmpq:
     return sum((math.prod(factors, start=c) for c, factors in terms), fmpq(0))
 
 
-def point_values(parameters: Ratios, at: Sequence[fmpq]) -> dict[str, fmpq]:
-    """Ratios at a rational point.
-
-    Raises
-    ------
-    ZeroDivisionError
-        Where a denominator vanishes there.
-    """
-    return {
-        name: evaluate(above, *at) / evaluate(below, *at)
-        for name, (above, below) in parameters.items()
-    }
-
-
-def shifted(rows: Sequence[Any], by: Any, number: int | None = None) -> list[Any]:
+def translated(rows: Sequence[Any], by: Any, number: int | None = None) -> list[Any]:
     """The coefficients of p(by + w) by w, from those of p(w): all, or so many first ones."""
     found = list(rows)
     number = len(found) if number is None else number
@@ -253,7 +237,7 @@ def local_coefficients(
     first ones.
     """
     line = arb_poly([arb(middle), arb(radius)])
-    return shifted([arb_poly(c)(line) for c in in_v], arb(origin), number)
+    return translated([arb_poly(c)(line) for c in in_v], arb(origin), number)
 
 
 class Restrictions:

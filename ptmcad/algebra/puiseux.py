@@ -28,7 +28,7 @@ from ptmcad.algebra.curve_branches import (
     TooFewBits,
     tube_around,
 )
-from ptmcad.algebra.polynomials import local_coefficients, shifted
+from ptmcad.algebra.polynomials import local_coefficients, translated
 from ptmcad.algebra.real_roots import RealRoot, refine
 from ptmcad.text.flint_numbers import simplest_between
 
@@ -178,7 +178,13 @@ def _blown_up(chart: _PuiseuxChart, s: arb) -> _PuiseuxChart | None:
         exponent = chart.exponent * q + e
         along = _spread(chart.along, q) + arb_poly([value]).left_shift(exponent)
         return _PuiseuxChart(
-            chart.power * q, along, exponent, shifted(rows, value), lowered, branches, there - value
+            chart.power * q,
+            along,
+            exponent,
+            translated(rows, value),
+            lowered,
+            branches,
+            there - value,
         )
     return None
 

@@ -16,7 +16,7 @@ from functools import lru_cache
 from operator import add
 from typing import NamedTuple
 
-from ptmcad.algebra.groebner import GroebnerBasis, divides, order_key, shifted
+from ptmcad.algebra.groebner import GroebnerBasis, divides, order_key, raised
 from ptmcad.algebra.plane_determinants import characteristic, determinant, least_assignment
 from ptmcad.algebra.polynomials import (
     Coefficient,
@@ -63,18 +63,18 @@ def standard_monomials(
         found += kept
         if most is not None and len(found) > most:
             raise LimitReached(f"more than {most} monomials are outside of the leading ideal")
-        layer = {shifted(m, k) for m in kept for k in range(unknowns)}
+        layer = {raised(m, k) for m in kept for k in range(unknowns)}
     return tuple(found)
 
 
 def border_of(basis: Collection[Monomial]) -> set[Monomial]:
     """The multiples of a basis's monomials by one unknown that are not of it."""
-    return {shifted(m, k) for m in basis for k in range(len(m))}.difference(basis)
+    return {raised(m, k) for m in basis for k in range(len(m))}.difference(basis)
 
 
 def divided(monomial: Monomial, known: Container[Monomial]) -> tuple[int, Monomial]:
     """The first unknown by which a monomial can be divided to a known one, and the known one."""
-    divisors = ((k, shifted(monomial, k, -1)) for k, e in enumerate(monomial) if e)
+    divisors = ((k, raised(monomial, k, -1)) for k, e in enumerate(monomial) if e)
     return next((k, below) for k, below in divisors if below in known)
 
 
@@ -151,7 +151,7 @@ def _sum(
 def _times_unknown(algebra: QuotientAlgebra, k: int, vector: Vector) -> Vector:
     row, denominator = vector
     terms = [
-        (c, denominator, algebra.table[shifted(m, k)])
+        (c, denominator, algebra.table[raised(m, k)])
         for m, c in zip(algebra.basis, row, strict=True)
         if not c.is_zero()
     ]
@@ -162,7 +162,7 @@ def normal_form(algebra: QuotientAlgebra, monomial: Monomial) -> Vector:
     """Coordinates of a monomial on the basis."""
     if monomial not in algebra.table:
         k = next(k for k, e in enumerate(monomial) if e)
-        below = shifted(monomial, k, -1)
+        below = raised(monomial, k, -1)
         algebra.table[monomial] = _times_unknown(algebra, k, normal_form(algebra, below))
     return algebra.table[monomial]
 
@@ -237,7 +237,7 @@ def _order(numerator: Coefficient, denominator: Coefficient, factor: Coefficient
 
 def multiplication_denominator(algebra: QuotientAlgebra) -> Coefficient:
     """A common denominator of the multiplication matrices of the unknowns."""
-    return lcm(algebra.table[shifted(m, k)][1] for m in algebra.basis for k in range(len(m)))
+    return lcm(algebra.table[raised(m, k)][1] for m in algebra.basis for k in range(len(m)))
 
 
 def poles(
@@ -262,7 +262,7 @@ def poles(
     found: list[Coefficient] = []
     x, y = algebra.one.context().gens()
     for k in coordinates:
-        vectors = [algebra.table[shifted(m, k)] for m in algebra.basis]
+        vectors = [algebra.table[raised(m, k)] for m in algebra.basis]
         rows, scales = [row for row, _ in vectors], [denominator for _, denominator in vectors]
         for line, asked in (((x, x + LINE), (*suspects, *remarks)), ((x, y), suspects)):
             on_line = [scale.compose(*line) for scale in scales]

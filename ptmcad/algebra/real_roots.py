@@ -230,14 +230,11 @@ def avoids(p: fmpz_poly | arb_poly, low: fmpq, high: fmpq) -> bool:
 
 
 def is_root_of(divisor: fmpz_poly, root: RealRoot) -> bool:
-    """Whether a divisor of the root's polynomial has the root too."""
-    if divisor.degree() < 1:
-        return False
-    return (
-        not sign_at(divisor, root.low)
-        if root.is_rational
-        else has_root_between(divisor, root.low, root.high)
-    )
+    """Whether a divisor of the root's polynomial has the root too: it is simple, and no end of its
+    interval is another one.
+    """
+    at_low = sign_at(divisor, root.low)
+    return at_low == 0 if root.is_rational else at_low != sign_at(divisor, root.high)
 
 
 def vanishes_at(p: fmpz_poly, root: RealRoot) -> bool:
@@ -249,21 +246,30 @@ def disjoint(roots: Sequence[RealRoot]) -> tuple[RealRoot, ...]:
     """Different real numbers in increasing order, with closed isolating intervals that are pairwise
     disjoint.
     """
-    ordered = sorted(roots, key=lambda r: (r.low, r.high))
+    return tuple(root for _, root in numbered_disjoint(roots))
+
+
+def numbered_disjoint(roots: Sequence[RealRoot]) -> list[tuple[int, RealRoot]]:
+    """The same, each with its number among those given."""
+
+    def place(numbered: tuple[int, RealRoot]) -> Interval:
+        return numbered[1].low, numbered[1].high
+
+    ordered = sorted(enumerate(roots), key=place)
     changed = True
     while changed:
         changed = False
         for i in range(len(ordered) - 1):
-            a, b = ordered[i], ordered[i + 1]
+            (n, a), (m, b) = ordered[i], ordered[i + 1]
             while a.high >= b.low:
                 a, b = (halve(a), b) if a.high - a.low >= b.high - b.low else (a, halve(b))
                 changed = True
                 if a.low > b.high or (a.is_rational and b.is_rational):
                     break
-            ordered[i], ordered[i + 1] = a, b
+            ordered[i], ordered[i + 1] = (n, a), (m, b)
         if changed:
-            ordered.sort(key=lambda r: (r.low, r.high))
-    return tuple(ordered)
+            ordered.sort(key=place)
+    return ordered
 
 
 def inside(roots: Sequence[RealRoot], interval: Interval) -> tuple[RealRoot, ...]:
@@ -288,55 +294,3 @@ def gaps(isolated: Sequence[Any], interval: tuple[Any, Any]) -> list[tuple[Any, 
         interval[1],
     ]
     return list(zip(ends[::2], ends[1::2], strict=True))
-
-
-_HALVINGS = 12
-"""How often an interval is halved before it is refined as fast as a cluster of roots needs."""
-
-
-def newton_ball(value: arb_poly, slope: arb_poly, root: RealRoot) -> arb:
-    """A ball around a root, about as narrow as the working precision allows, by the interval Newton
-    operator.
-
-    With a root in X and 0 not in p'(X), it lies in m - p(m) / p'(X) for any m in X, by the mean value
-    theorem (Moore, Interval Analysis, 1966).
-
-    Parameters
-    ----------
-    value, slope : the root's polynomial and its derivative in balls of that precision.
-    """
-    low, high = root.low, root.high
-    if low == high:
-        return arb(low)
-    rising = sign_at(root.polynomial, high) > 0
-    for _ in range(_HALVINGS):
-        found = _narrowed(value, slope, arb(low).union(arb(high)))
-        if found is not None:
-            return found
-        middle = (low + high) / 2
-        there = value(arb(middle))
-        if there > 0 if rising else there < 0:
-            high = middle
-        elif there < 0 if rising else there > 0:
-            low = middle
-        else:  # the root, or too near to it to tell
-            break
-    # by its own means as far as the ball is to be narrow, where Newton's would not be at this
-    # precision
-    return refine(root, fmpq(1, 2 ** (ctx.prec - 8)) * (abs(root.middle) + 1)).ball
-
-
-def _narrowed(value: arb_poly, slope: arb_poly, ball: arb) -> arb | None:
-    """The root of a ball in one of at most the square root of the precision's unit; None when
-    that fails.
-    """
-    while True:
-        steepness = slope(ball)
-        if steepness.contains(0):
-            return None
-        middle = ball.mid()
-        found = middle - value(middle) / steepness
-        if not 2 * found.rad() < ball.rad():
-            small = ball.rad() * 2 ** (ctx.prec // 2) < abs(middle) + 1
-            return ball if small else None
-        ball = found

@@ -23,7 +23,7 @@ from math import isqrt
 
 from flint import fmpq, fmpq_poly, fmpz_poly
 
-from ptmcad.algebra.polynomials import Restrictions, shifted
+from ptmcad.algebra.polynomials import Restrictions, translated
 from ptmcad.algebra.real_roots import RealRoot, disjoint, isolate, sign_at
 
 Coefficients = Sequence[fmpz_poly]
@@ -54,7 +54,7 @@ def axis_of(p: Coefficients) -> fmpq_poly | None:
     axis, rest = divmod(fmpq_poly(-p[-2]), n * fmpq_poly(p[-1]))
     if rest or axis.degree() > 1:
         return None
-    return axis if not any(_shifted(p, axis)[1::2]) else None
+    return axis if not any(_translated(p, axis)[1::2]) else None
 
 
 def squared(p: Coefficients, axis: fmpq_poly) -> list[fmpz_poly]:
@@ -65,13 +65,13 @@ def squared(p: Coefficients, axis: fmpq_poly) -> list[fmpz_poly]:
     axis : m, as `axis_of` says, with the common denominator d.
     """
     n, d = len(p) - 1, axis.denom()
-    rows = _shifted(p, axis)[::2]
+    rows = _translated(p, axis)[::2]
     return [(row * d ** (n - 2 * k)).numer() for k, row in enumerate(rows)]
 
 
-def _shifted(p: Coefficients, by: fmpq_poly) -> list[fmpq_poly]:
+def _translated(p: Coefficients, by: fmpq_poly) -> list[fmpq_poly]:
     """The coefficients of p(u, by + w)."""
-    return shifted([fmpq_poly(c) for c in p], by)
+    return translated([fmpq_poly(c) for c in p], by)
 
 
 _BITS = 16

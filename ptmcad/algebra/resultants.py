@@ -206,12 +206,14 @@ def _interpolated(
         return interpolate(lambda u: formal(*images(u)), degree, check)
     used = list(islice(primes(), needed))
     modulus = math.prod(map(fmpz, used), start=fmpz(1))
-    weights = [modulus // prime * pow(int(modulus // prime % prime), -1, prime) for prime in used]
+    idempotents = [
+        modulus // prime * pow(int(modulus // prime % prime), -1, prime) for prime in used
+    ]
 
     def at(u: int) -> fmpz:
         values = images(u)
         residues = [int(formal(*(nmod_poly(value, prime) for value in values))) for prime in used]
-        return sum(map(operator.mul, weights, residues), fmpz(0)) % modulus
+        return sum(map(operator.mul, idempotents, residues), fmpz(0)) % modulus
 
     return interpolate(at, degree, check, modulus)
 

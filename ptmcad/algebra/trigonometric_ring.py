@@ -99,17 +99,8 @@ class TrigonometricRing(NamedTuple):
         """p with every even power of a cosine replaced by means of cos^2 + sin^2 = 1: a normal form
         on the torus.
         """
-        n = len(self.parameters)
-        for index in range(len(self.angles)):
-            k = n + 2 * index
-            one_minus = self.context.constant(1) - self.context.gen(k + 1) ** 2
-            total = self.context.constant(0)
-            for exponents, coefficient in p.terms():
-                rest = list(exponents)
-                rest[k] %= 2
-                term = self.context.from_dict({tuple(rest): coefficient})
-                total += term * one_minus ** (exponents[k] // 2)
-            p = total
+        for angle in self.angles:
+            p = p % (self.cos(angle) ** 2 + self.sin(angle) ** 2 - 1)
         return p
 
     def split(self, p: TrigonometricPolynomial) -> dict[Monomial, RationalPolynomial]:

@@ -1,6 +1,6 @@
 """The boundaries of a map's regions as polylines, for other programs to draw.
 
-Guarantee: each curve is within `Boundary.distance` of its polyline, as `ptmcad.exact.cad.polyline`
+Guarantee: each curve is within `Boundary.distance` of its polyline, as `ptmcad.exact.boundaries.polyline`
 proves, and the distance is at most the tolerance unless it is said to be more; a certified map's
 polylines are its cells' own outlines.
 """
@@ -22,7 +22,7 @@ from ptmcad.ask.location import component_cells
 from ptmcad.cover.complement import outlines
 from ptmcad.cover.rectangles import Cover
 from ptmcad.errors import ConfigError
-from ptmcad.exact.cad.polyline import WallPolyline, chains, critical_shares
+from ptmcad.exact.boundaries.polyline import WallPolyline, chains, critical_shares
 from ptmcad.exact.cad.projection import lines_of
 from ptmcad.question.slice import within_doubles
 from ptmcad.text.parsing import share_for

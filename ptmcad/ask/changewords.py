@@ -11,7 +11,7 @@ from collections.abc import Iterator
 from ptmcad.answer.arrangement import SIDES
 from ptmcad.answer.counts import key_text
 from ptmcad.answer.words import index_words, noun
-from ptmcad.exact.decomposition import Link, members, merge
+from ptmcad.exact.cad.decomposition import Link, members, region_numbers
 from ptmcad.exact.slicearrangement import Picture
 from ptmcad.text.numerals import text_of
 
@@ -34,7 +34,7 @@ def _groups(before: Picture, after: Picture) -> list[_Same]:
     keys = (*before.arrangement.keys, *after.arrangement.keys)
     links: list[Link] = [(a, number + b, 1) for a, b in _shared(before, after)]
     links += [(a, number + b, 1) for b, a in _shared(after, before)]
-    groups = members(merge(keys, links))
+    groups = members(region_numbers(keys, links))
     return [([n for n in g if n < number], [n - number for n in g if n >= number]) for g in groups]
 
 

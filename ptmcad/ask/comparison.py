@@ -17,10 +17,10 @@ from ptmcad.answer.counts import counted_by
 from ptmcad.answer.regionmap import HARMLESS, Cell, Component, Region, RegionMap, Status
 from ptmcad.ask.location import locate
 from ptmcad.errors import A_MAP, ConfigError, expect
-from ptmcad.exact.cad.area import region_areas
-from ptmcad.exact.decomposition import cut_along, members, seen_from
+from ptmcad.exact.areas.area import region_areas
+from ptmcad.exact.areas.regionareas import region_stacks
+from ptmcad.exact.cad.decomposition import cut_along, members, seen_from
 from ptmcad.exact.mapassembly import critical_values_of, stacks_of_cells
-from ptmcad.exact.regionareas import region_stacks
 from ptmcad.question.counts import Count
 from ptmcad.question.slice import Point
 from ptmcad.text.flint_numbers import interval_of

@@ -14,12 +14,11 @@ common divisor.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from itertools import combinations
+from itertools import combinations, pairwise
 from typing import NamedTuple
 
-from flint import arb, ctx, fmpq
+from flint import arb, arb_mat, ctx, fmpq
 
-from ptmcad.algebra.ball_inertia import negative_eigenvalues
 from ptmcad.algebra.descartes import root_bound
 from ptmcad.algebra.fibre_algebra import (
     Divisor,
@@ -217,10 +216,38 @@ def _negative_eigenvalues(
     upper : the Hessian's entries on and above the diagonal, with their places.
     size : its number of rows.
     """
-    rows = [[arb(0)] * size for _ in range(size)]
+    matrix = arb_mat(size, size)
     for i, j, entry in upper:
-        rows[i][j] = rows[j][i] = _value(entry, unknowns)
-    return negative_eigenvalues(rows)
+        matrix[i, j] = matrix[j, i] = _value(entry, unknowns)
+    return negative_eigenvalues(matrix)
+
+
+def negative_eigenvalues(matrix: arb_mat) -> int | None:
+    """The number of negative eigenvalues of a symmetric matrix of balls, the same for all regular
+    matrices in it; None when the balls are too wide to tell.
+
+    The characteristic polynomial has real roots only, so that Descartes' rule is exact. A
+    coefficient whose sign is open changes nothing between two of opposite signs. For narrow balls
+    these are all: of a coefficient that is zero the two neighbours have opposite signs.
+
+    Raises
+    ------
+    ArithmeticError
+        When an entry is not finite.
+    """
+    if not all(entry.is_finite() for entry in matrix.entries()):
+        raise ArithmeticError(f"a matrix has an entry that is not finite at {ctx.prec} bits")
+    coefficients = matrix.charpoly().coeffs()
+    certain = [k for k, c in enumerate(coefficients) if not c.contains(0)]
+    if certain[0]:
+        return None
+    changes = 0
+    for low, high in pairwise(certain):
+        is_change = bool(coefficients[low] * coefficients[high] < 0)
+        if high - low > 2 - (not is_change):
+            return None
+        changes += is_change
+    return matrix.nrows() - changes
 
 
 def _decimal_box(unknowns: Sequence[arb]) -> tuple[tuple[fmpq, ...], fmpq] | None:

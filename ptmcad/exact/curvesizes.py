@@ -30,7 +30,7 @@ from ptmcad.algebra.ratios import LinePolynomial, Numerator, degree, numerator, 
 from ptmcad.algebra.resultants import Check, nothing, primes
 from ptmcad.algebra.trigonometric_ring import RationalPolynomial
 from ptmcad.errors import LimitReached
-from ptmcad.exact.decomposition import Sample
+from ptmcad.exact.cad.decomposition import Sample
 from ptmcad.exact.models.system import SystemOnAxes
 from ptmcad.exact.point_system import DegeneratePoint, PointSystem, point_system
 from ptmcad.exact.stages import SliceProblem, decomposition_of

@@ -24,8 +24,9 @@ determinant because the latter also vanishes where the monomial basis degenerate
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Sequence
-from typing import NamedTuple
+from collections.abc import Callable, Iterator, Sequence
+from functools import partial
+from typing import Any, NamedTuple
 
 from ptmcad.algebra.bernstein import nowhere_zero
 from ptmcad.algebra.groebner import GroebnerBasis, groebner_basis
@@ -33,7 +34,6 @@ from ptmcad.algebra.plane_determinants import determinant
 from ptmcad.algebra.polynomials import (
     Coefficient,
     Ratio,
-    from_plane,
     irreducible_factors,
     to_plane,
 )
@@ -64,26 +64,12 @@ from ptmcad.exact.models.system import (
 from ptmcad.text.plane import PlanePolynomial
 
 
-class DiscriminantVariety(NamedTuple):
-    """The variety's components and the number of complex solutions at a generic point.
-
-    Attributes
-    ----------
-    excludes : whether solutions at which an inequality's polynomial is zero were left out, as they
-        are in the way.
-    """
-
-    components: tuple[Component, ...]
-    complex_solutions: int
-    excludes: bool
-
-
 def discriminant_variety(
     on: SystemOnAxes,
     window: Window,
     without: frozenset[str] = frozenset(),
     known: Known | None = None,
-) -> DiscriminantVariety:
+) -> tuple[tuple[Component, ...], int, bool]:
     """The discriminant variety of a slice over a window.
 
     Parameters
@@ -94,47 +80,81 @@ def discriminant_variety(
     known : gives for the equations what is known of them from a family that the slice is of, or
         None.
 
+    Returns
+    -------
+    The components, by kind, number of terms and terms, those left out last; the number of complex
+    solutions at a generic point; and whether solutions at which an inequality's polynomial is zero
+    were left out, as they are in the way.
+
     Raises
     ------
     InfiniteSolutionsError, DegenerateSliceError
         When every point of the slice is exceptional.
     """
     given = on.equations
-    found = None if known is None else known(given)
-    equations, algebra, rows, jacobian_norm = nondegenerate(given) if found is None else found
-    seen = _Components(window, without)
-    for polynomial in (*equations.boundary, *on.limits):
-        seen.adopt(irreducible_factors(polynomial), Kind.BOUNDARY)
-    singular = irreducible_factors(jacobian_norm[0])
+    family = None if known is None else known(given)
+    found = nondegenerate(given) if family is None else family
+    equations, algebra = found.equations, found.algebra
+    outside = partial(_is_outside, window, "no-real-points" not in without)
+    limits = irreducible_factors(*equations.boundary, *on.limits)
+    singular = irreducible_factors(found.jacobian_norm[0])
     escaping = [] if equations.is_compact else poles(algebra, singular, equations.unbounded)
-    seen.adopt([f for f in singular if f not in escaping], Kind.CRITICAL)
-    seen.adopt(escaping, Kind.INFINITY)
-    for polynomial in sign_changes(equations, algebra):
-        seen.adopt(irreducible_factors(polynomial), Kind.BOUNDARY)
-    suspects = [
-        f
-        for f in irreducible_factors(multiplication_denominator(algebra))
-        if to_plane(f) not in seen.found
-    ]
-    # hidden ones have no point in the window; on proved ones the Jacobian's determinant stays away from
-    # zero; doubtful are the rest. Of each only those with a pole belong to the variety
-    hidden = [f for f in suspects if seen.outside(f)]
+    critical = [f for f in singular if f not in escaping]
+    conditions = irreducible_factors(*sign_changes(equations, algebra))
+    superfluous = irreducible_factors(*_superfluous(on, equations, algebra, without))
+    parts = (
+        (limits, Kind.BOUNDARY, ""),
+        (critical, Kind.CRITICAL, ""),
+        (escaping, Kind.INFINITY, ""),
+        (conditions, Kind.BOUNDARY, ""),
+        *_at_infinity(found, [*limits, *singular, *conditions], outside, without),
+        (superfluous, Kind.AUXILIARY, ""),
+    )
+    component_of: dict[PlanePolynomial, Component] = {}
+    for factors, kind, why in parts:
+        for f in factors:
+            polynomial = to_plane(f)
+            if polynomial not in component_of:  # the first kind of a curve stands
+                left_out = why or (NO_POINT if outside(f) else "")
+                where = None if left_out else continuum(f, on, given, found.jacobian_norm[0])
+                component_of[polynomial] = Component(polynomial, kind, left_out, continuum=where)
+    components = tuple(sorted(component_of.values(), key=_place))
+    return components, algebra.dimension, equations.unknowns > given.unknowns
+
+
+def _is_outside(window: Window, is_tried: bool, factor: Coefficient) -> bool:
+    """Whether a curve is seen to have no point in the window."""
+    return is_tried and nowhere_zero(factor, window)
+
+
+def _at_infinity(
+    found: Nondegenerate,
+    others: Sequence[Coefficient],
+    outside: Callable[[Coefficient], bool],
+    without: frozenset[str],
+) -> Iterator[tuple[list[Coefficient], Kind, str]]:
+    """The curves, none of the others, on which complex solutions alone leave every bounded set, by
+    why they are left out, if they are.
+    """
+    equations, algebra = found.equations, found.algebra
+    denominator = irreducible_factors(multiplication_denominator(algebra))
+    suspects = [f for f in denominator if f not in others]
+    hidden = [f for f in suspects if outside(f)]
     visible = [f for f in suspects if f not in hidden]
+    # near proved ones the Jacobian's determinant stays away from zero; doubtful are the rest
     tried = visible if settles(equations) and "infinity" not in without else []
-    proved = harmless(equations, rows, jacobian_norm, tried)
+    proved = harmless(equations, found.rows, found.jacobian_norm, tried)
     doubtful = [f for f in visible if f not in proved]
     unbounded = poles(algebra, doubtful, equations.unbounded, [*hidden, *proved])
     for factors, why in ((hidden, NO_POINT), (proved, HARMLESS), (doubtful, "")):
-        seen.adopt([f for f in factors if f in unbounded], Kind.INFINITY, why)
-    for polynomial in _superfluous(on, equations, algebra, without):
-        seen.adopt(irreducible_factors(polynomial), Kind.AUXILIARY)
-    components = tuple(
-        c._replace(continuum=continuum(from_plane(c.polynomial), on, given, jacobian_norm[0]))
-        if not c.left_out
-        else c
-        for c in seen.in_order()
-    )
-    return DiscriminantVariety(components, algebra.dimension, equations.unknowns > given.unknowns)
+        yield [f for f in factors if f in unbounded], Kind.INFINITY, why
+
+
+def _place(c: Component) -> tuple[Any, ...]:
+    return bool(c.left_out), _ORDER[c.kind], len(c.polynomial.terms), c.polynomial.terms
+
+
+_ORDER = {Kind.CRITICAL: 0, Kind.INFINITY: 1, Kind.BOUNDARY: 2, Kind.AUXILIARY: 3}
 
 
 def _superfluous(
@@ -154,48 +174,6 @@ def check_hypotheses(on: SystemOnAxes) -> None:
     equations, algebra, *_ = nondegenerate(on.equations)
     for _ in sign_changes(equations._replace(inequalities=()), algebra):
         pass  # which refuses conditions
-
-
-class _Components:
-    """The components found so far, each with the first kind that was found for it."""
-
-    def __init__(self, window: Window, without: frozenset[str]) -> None:
-        self.window = window
-        self.without = without
-        self.found: dict[PlanePolynomial, Component] = {}
-
-    def outside(self, factor: Coefficient) -> str:
-        """Why a curve is left out that has no point in the window, or the empty string."""
-        return (
-            NO_POINT
-            if "no-real-points" not in self.without and nowhere_zero(factor, self.window)
-            else ""
-        )
-
-    def adopt(self, factors: Iterable[Coefficient], kind: Kind, left_out: str = "") -> None:
-        for factor in factors:
-            polynomial = to_plane(factor)
-            if polynomial not in self.found:
-                self.found[polynomial] = Component(
-                    polynomial, kind, left_out or self.outside(factor)
-                )
-
-    def in_order(self) -> tuple[Component, ...]:
-        """Those left out last; by kind, number of terms and terms."""
-        return tuple(
-            sorted(
-                self.found.values(),
-                key=lambda c: (
-                    bool(c.left_out),
-                    _ORDER[c.kind],
-                    len(c.polynomial.terms),
-                    c.polynomial.terms,
-                ),
-            )
-        )
-
-
-_ORDER = {Kind.CRITICAL: 0, Kind.INFINITY: 1, Kind.BOUNDARY: 2, Kind.AUXILIARY: 3}
 
 
 class Nondegenerate(NamedTuple):

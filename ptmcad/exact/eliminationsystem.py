@@ -18,9 +18,8 @@ from ptmcad.errors import A_SLICE, expect
 from ptmcad.exact.mapassembly import versions
 from ptmcad.exact.models.modelsystem import system_text
 from ptmcad.exact.models.system import SystemOnAxes, on_slice, saturated
-from ptmcad.exact.stages import problem_of, variety_of
-from ptmcad.question.domain import proved
-from ptmcad.question.slice import Slice, without_free_lengths
+from ptmcad.exact.stages import problem_without_free_lengths, variety_of
+from ptmcad.question.slice import Slice
 
 INVERSE = "inverse"
 """The name of the unknown that is one, with a number where the name is taken."""
@@ -77,8 +76,7 @@ def slice_variety(slice: Slice, without: frozenset[str] = frozenset()) -> SliceV
         geometry.
     """
     expect(slice, Slice, "slice", A_SLICE)
-    without_free_lengths(slice.model, slice.parameters, "the discriminant variety is")
-    problem = problem_of(proved(slice))
+    problem = problem_without_free_lengths(slice, "the discriminant variety is")
     variety = variety_of(problem, without)
     return SliceVariety(
         slice,

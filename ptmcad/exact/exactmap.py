@@ -13,7 +13,7 @@ timed.
 | areas      | `regionareas.areas_of`           | `stages.Areas`                          |
 |            | `mapassembly.assemble`           | `answer.regionmap.RegionMap`            |
 
-With `Options.sparing` adjacency comes before counts, and `stages.counts_by_component` makes these.
+With `Options.sparing` adjacency comes before counts, and `stages.counts_of_parts` makes these.
 
 Guarantee: the map is exact (`Status.EXACT`): no step decides anything by rounding without an error
 bound.
@@ -28,8 +28,9 @@ from time import perf_counter
 
 from ptmcad.answer.regionmap import RegionMap, Status
 from ptmcad.errors import LimitReached
+from ptmcad.exact.areas.regionareas import areas_of
 from ptmcad.exact.cad.crossings import Crossing
-from ptmcad.exact.decomposition import (
+from ptmcad.exact.cad.decomposition import (
     Decomposition,
     crossings_of,
     joined_cells,
@@ -39,18 +40,16 @@ from ptmcad.exact.decomposition import (
 )
 from ptmcad.exact.discriminant_variety import Known
 from ptmcad.exact.mapassembly import PartialMap, assemble
-from ptmcad.exact.regionareas import areas_of
 from ptmcad.exact.stages import (
     Cells,
     SliceProblem,
-    counts_by_component,
     counts_of,
-    problem_of,
+    counts_of_parts,
+    problem_without_free_lengths,
     variety_of,
 )
 from ptmcad.options import DEFAULTS, Options
-from ptmcad.question.domain import proved
-from ptmcad.question.slice import Slice, without_free_lengths
+from ptmcad.question.slice import Slice
 
 AREA_TOLERANCE = Fraction(1, 10_000)
 
@@ -110,9 +109,8 @@ def exact_map(slice: Slice, options: Options = DEFAULTS, known: Known | None = N
     LimitReached
         At the deadline, with what there is of the map as ``partial``.
     """
-    without_free_lengths(slice.model, slice.parameters, "an exact map is")
     clock = _Clock(options)
-    problem = problem_of(proved(slice))._replace(known=known)
+    problem = problem_without_free_lengths(slice, "an exact map is")._replace(known=known)
     reached: PartialMap | None = None
     try:
         for reached in _stages(problem, options, clock):
@@ -156,7 +154,7 @@ def _counted(
         if stage == "adjacency":
             crossings = crossings_of(cut, report, clock.check)
         elif options.sparing:
-            counts = counts_by_component(problem, cut, joined_cells(cut, crossings), report)
+            counts = counts_of_parts(problem, cut, joined_cells(cut, crossings), report)
         else:
             counts = counts_of(problem, cut, report)
         clock.stage(stage)

@@ -17,6 +17,7 @@ from flint import fmpq
 
 from ptmcad.algebra.fibre_algebra import WorkLimit
 from ptmcad.algebra.fibre_points import RealPoint, points
+from ptmcad.algebra.number_field import Modulus
 from ptmcad.algebra.polynomials import Values
 from ptmcad.answer.poses import Pose, Poses
 from ptmcad.answer.regionmap import Status
@@ -143,9 +144,9 @@ def _exact_solutions(
     known: CompiledSystem, system: PointSystem, parameters: Values, real: Sequence[RealPoint]
 ) -> Iterator[ExactSolution]:
     """The solutions at real points; those at roots of one polynomial share the work."""
-    first: dict[int, ExactSolution] = {}
+    first: dict[Modulus, ExactSolution] = {}
     for point in real:
-        modulus = id(point.field.modulus)
+        modulus = point.field.modulus
         if modulus not in first:
             first[modulus] = solution_at(known, system, parameters, point)
         yield replace(first[modulus], point=point)

@@ -28,8 +28,8 @@ from ptmcad.answer.regionmap import (
     Status,
 )
 from ptmcad.exact.cad.crossings import Crossing
+from ptmcad.exact.cad.decomposition import Decomposition, Variety, members, segment_of
 from ptmcad.exact.cad.projection import Projection
-from ptmcad.exact.decomposition import Decomposition, Variety, members, segment_of
 from ptmcad.exact.exactplan import plan_of
 from ptmcad.exact.models.modelsystem import system_text
 from ptmcad.exact.stages import Areas, Cells, SliceProblem

@@ -18,8 +18,7 @@ from ptmcad.algebra.real_roots import Window
 from ptmcad.algebra.resultants import Check, nothing
 from ptmcad.answer.counts import counted_by
 from ptmcad.errors import DegenerateSliceError, GeometryError, InfiniteSolutionsError
-from ptmcad.exact.counting import Equilibria, equilibria
-from ptmcad.exact.decomposition import (
+from ptmcad.exact.cad.decomposition import (
     Decomposition,
     Neighbours,
     Report,
@@ -30,12 +29,14 @@ from ptmcad.exact.decomposition import (
     seen_from,
     unreported,
 )
+from ptmcad.exact.counting import Equilibria, equilibria
 from ptmcad.exact.discriminant_variety import Known, check_hypotheses, discriminant_variety
 from ptmcad.exact.models import ParametricSystem, system_counted
 from ptmcad.exact.models.system import SystemOnAxes, on_axes
 from ptmcad.exact.point_system import DegeneratePoint
 from ptmcad.model.involutions import Involution, involutions
-from ptmcad.question.slice import Slice
+from ptmcad.question.domain import proved
+from ptmcad.question.slice import Slice, without_free_lengths
 from ptmcad.text.flint_numbers import interval_of, to_fraction
 from ptmcad.text.numerals import short_text
 
@@ -113,6 +114,22 @@ class Cells(NamedTuple):
     neighbours: Neighbours
 
 
+def problem_without_free_lengths(slice: Slice, task: str) -> SliceProblem:
+    """The problem of a slice, whose parameters are proved to have their signs.
+
+    Parameters
+    ----------
+    task : with a verb: what is refused where springs have a free length.
+
+    Raises
+    ------
+    ConfigError
+        When springs have a free length, or a parameter has another sign.
+    """
+    without_free_lengths(slice.model, slice.parameters, task)
+    return problem_of(proved(slice))
+
+
 def problem_of(slice: Slice) -> SliceProblem:
     """The slice in the ring of the engine."""
     first, second = map(interval_of, slice.axes)
@@ -142,7 +159,7 @@ def variety_of(
         raise _explained(problem, error) from error
     if base is None and "axis-order" in without:
         base = 0
-    return seen_from(found.components, base, found.complex_solutions, found.excludes)
+    return seen_from(*found, base)
 
 
 def decomposition_of(
@@ -233,24 +250,24 @@ def count_at(where: str, on: SystemOnAxes, at: Sequence[fmpq]) -> Equilibria:
         ) from error
 
 
-def counts_by_component(
+def counts_of_parts(
     problem: SliceProblem,
     cut: Decomposition,
-    component_of: Sequence[int],
+    part_of: Sequence[int],
     report: Report = unreported,
 ) -> SampleCounts:
-    """The counts of every cell, and the equilibria at one sample of each component, the sample with
+    """The counts of every cell, and the equilibria at one sample of each part, the sample with
     the shortest numbers.
 
     Parameters
     ----------
-    component_of : of each cell, the connected part of the variety's complement, as in
+    part_of : of each cell, the connected part of the variety's complement, as in
         `joined_cells`.
     """
     found: dict[int, Equilibria] = {}
-    components = members(component_of)
-    for k, cells in enumerate(components):
-        report(k, len(components))
+    parts = members(part_of)
+    for k, cells in enumerate(parts):
+        report(k, len(parts))
         first = min(cells, key=lambda n: _length(cut.points[n]))
         there = problem.solved_at(cut.points[first])
         for n in cells:

@@ -22,7 +22,7 @@ from ptmcad.answer.family import FamilyMap
 from ptmcad.ask.changes import Members
 from ptmcad.ask.members import Common, in_common, restored
 from ptmcad.errors import ConfigError
-from ptmcad.exact.slicearrangement import BoundaryStrips
+from ptmcad.exact.boundaries.boundarystrips import BoundaryStrips
 from ptmcad.options import DEFAULTS, Options, Progress
 from ptmcad.question.slice import within_doubles
 from ptmcad.text.flint_numbers import simplest_fraction

@@ -1,7 +1,7 @@
 """The mesh of a family's boundary surface: between neighbouring members' walls, strips of
 triangles.
 
-Guarantee: every vertex is a point of `ptmcad.exact.slicearrangement`, at a member's value. The walls of
+Guarantee: every vertex is a point of `ptmcad.exact.boundaries.boundarystrips`, at a member's value. The walls of
 members that are joined are cut at the same shares of their strips, so finely that chords of some of
 the members' walls miss no middle by more than the tolerance, up to the depth of subdivision.
 """
@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ptmcad.answer.boundarysurface import Sheet
-from ptmcad.exact.slicearrangement import JUMP, BoundaryStrips, Key
+from ptmcad.exact.boundaries.boundarystrips import JUMP, BoundaryStrips, Key
 from ptmcad.question.slice import Axes
 
 Joined = list[tuple[Fraction, BoundaryStrips]]

@@ -16,7 +16,7 @@ from support.programs import needs_msolve
 import ptmcad
 from ptmcad.algebra import bases, msolve
 from ptmcad.algebra.bases import quotient
-from ptmcad.algebra.fibre_algebra import RationalPolynomial, WorkLimit, fibre
+from ptmcad.algebra.fibre_algebra import RationalPolynomial, WorkLimit, own_quotient
 from ptmcad.algebra.membership import lies_in_ideal
 from ptmcad.algebra.msolve import MsolveError, parsed_basis
 from ptmcad.algebra.proved import quotient_by_msolve
@@ -57,7 +57,7 @@ def answering(text: str) -> str:
 def test_a_basis_that_is_proved_is_used(fake: Fake) -> None:
     fake(answering(RIGHT))
     found = quotient_by_msolve(CORNERS, 2, 20)
-    own = fibre(CORNERS, 2)
+    own = own_quotient(CORNERS, 2)
     assert found.by_msolve
     assert own is not None
     assert (found.basis, found.multiplication) == (own.basis, own.multiplication)
@@ -96,7 +96,7 @@ def test_a_wrong_answer_is_refused_and_survived(
     monkeypatch.setattr(bases, "SMALL", WorkLimit(0, 0, 0, 0))
     monkeypatch.setattr(bases, "SECONDS", 0.2 if what == "endless" else 20)
     with pytest.warns(PtmcadWarning, match="its basis is not used"):
-        assert quotient(CORNERS, 2) == fibre(CORNERS, 2)
+        assert quotient(CORNERS, 2) == own_quotient(CORNERS, 2)
 
 
 def test_an_added_root_within_the_bound_is_seen(fake: Fake) -> None:
@@ -128,17 +128,17 @@ def test_without_msolve_the_extra_is_named(monkeypatch: pytest.MonkeyPatch) -> N
     monkeypatch.setattr(bases, "MANY", 1)
     monkeypatch.setattr(bases, "SMALL", WorkLimit(0, 0, 0, 0))
     with pytest.warns(PtmcadWarning, match=r"may take very long; .*pip install 'ptmcad\[large\]'"):
-        assert quotient(CORNERS, 2) == fibre(CORNERS, 2)
+        assert quotient(CORNERS, 2) == own_quotient(CORNERS, 2)
     with pytest.raises(LimitReached, match=r"pip install 'ptmcad\[large\]'"):
         quotient(CORNERS, 2, WorkLimit(0, 0, 0, 0, by_msolve=10))
 
 
 def test_small_systems_and_small_questions_do_not_ask_msolve(fake: Fake) -> None:
     fake("os.abort()")
-    assert quotient(CORNERS, 2) == fibre(CORNERS, 2)
+    assert quotient(CORNERS, 2) == own_quotient(CORNERS, 2)
     many = ({(12, 0): ONE, (0, 0): -ONE}, {(0, 12): ONE, (0, 1): ONE})
     assert bases.is_large(many)
-    assert quotient(many, 2) == fibre(many, 2)  # its basis is small
+    assert quotient(many, 2) == own_quotient(many, 2)  # its basis is small
     with pytest.raises(LimitReached):
         quotient(CORNERS, 2, WorkLimit(1, 100, 100, 100))
 
@@ -199,6 +199,6 @@ def test_msolve_itself_is_proved_right() -> None:
         {(0, 2, 0): ONE, (1, 0, 1): fmpq(-7, 2), (0, 0, 1): ONE},
         {(0, 0, 3): ONE, (1, 1, 0): ONE, (0, 0, 0): fmpq(1, 9)},
     )
-    found, own = quotient_by_msolve(equations, 3, 60), fibre(equations, 3)
+    found, own = quotient_by_msolve(equations, 3, 60), own_quotient(equations, 3)
     assert own is not None
     assert (found.basis, found.multiplication) == (own.basis, own.multiplication)

@@ -8,7 +8,8 @@ from itertools import pairwise
 import pytest
 from flint import arb, arb_poly, ctx, fmpq, fmpz_poly
 
-from ptmcad.algebra.real_roots import RealRoot, isolate, newton_ball, sign_at
+from ptmcad.algebra.fibre_algebra import newton_ball
+from ptmcad.algebra.real_roots import RealRoot, isolate, sign_at
 
 
 def _squarefree(source: random.Random) -> fmpz_poly:

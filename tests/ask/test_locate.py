@@ -39,7 +39,7 @@ def test_points_next_to_walls(name: str) -> None:
         for level, wall in enumerate(stack.walls):
             p = curve(
                 wall.component, from_plane(result.components[wall.component].polynomial), base
-            ).fibre(u)
+            ).polynomial_over(u)
             root = refine(isolate(p, low, high)[wall.root], from_fraction(TINY / 4))
             for v, expected in (
                 (to_fraction(root.high) + TINY, level + 1),

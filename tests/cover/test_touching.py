@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from ptmcad.cover.subdivision import connected
-from ptmcad.exact.decomposition import merge
+from ptmcad.exact.cad.decomposition import region_numbers
 
 
 @given(
@@ -19,7 +19,7 @@ def test_arrays_and_links_connect_alike(graph: tuple[int, list[tuple[int, int]]]
     number, edges = graph
     first, second = np.array(edges, dtype=np.int64).reshape(-1, 2).T
     label = connected(number, first, second)
-    regions = merge([None] * number, [(a, b, None) for a, b in edges])
+    regions = region_numbers([None] * number, [(a, b, None) for a, b in edges])
     assert label.tolist() == [regions.index(region) for region in regions]
 
 

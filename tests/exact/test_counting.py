@@ -8,7 +8,7 @@ import random
 from fractions import Fraction
 
 import pytest
-from flint import fmpq
+from flint import arb, arb_mat, fmpq
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from support import oracle
@@ -22,6 +22,7 @@ from support.signatures import count_by_isolation, count_by_signature
 from ptmcad import load
 from ptmcad.ask.stepwise import slice_from
 from ptmcad.errors import GeometryError
+from ptmcad.exact.counting import negative_eigenvalues
 from ptmcad.exact.point_system import DegeneratePoint
 from ptmcad.exact.stages import problem_of
 from ptmcad.text.flint_numbers import from_fraction
@@ -246,3 +247,26 @@ def test_a_point_without_geometry_is_refused_with_its_bound(
     slice = slice_from({"name": "lengths", "axes": {"rho": [0, 2], "L2": [0, 2]}})
     with pytest.raises(GeometryError, match=must):
         problem_of(slice).solved_at((fmpq(rho), fmpq(length)))
+
+
+@pytest.mark.parametrize("size", [1, 2, 3, 4, 5])
+def test_inertia_of_congruent_matrices(size: int) -> None:
+    """P' D P has as many negative eigenvalues as the diagonal D has negative entries (Sylvester)."""
+    source = random.Random(size)
+    for _ in range(50):
+        diagonal = [source.choice((-3, -1, 1, 2)) for _ in range(size)]
+        d = arb_mat([[x * (i == j) for j in range(size)] for i, x in enumerate(diagonal)])
+        upper = arb_mat(
+            [
+                [source.randint(-3, 3) if j > i else int(i == j) for j in range(size)]
+                for i in range(size)
+            ]
+        )
+        assert negative_eigenvalues(upper.transpose() * d * upper) == sum(x < 0 for x in diagonal)
+
+
+def test_inertia_is_open_where_balls_hold_a_singular_matrix() -> None:
+    assert negative_eigenvalues(arb_mat([[0, 1], [1, 0]])) == 1
+    assert negative_eigenvalues(arb_mat([[1, 0], [0, arb(0, 1)]])) is None
+    with pytest.raises(ArithmeticError, match="not finite"):
+        negative_eigenvalues(arb_mat([[arb.nan()]]))

@@ -101,7 +101,7 @@ def test_the_plan_says_which_involution_makes_one_half_enough(name: str, moves: 
 def test_the_plan_says_nothing_of_a_half_where_areas_are_those_of_the_whole_window(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    monkeypatch.setattr("ptmcad.exact.regionareas._images", lambda *given: None)
+    monkeypatch.setattr("ptmcad.exact.areas.regionareas._images", lambda *given: None)
     found = exact_map(_record("rods"))
     assert not [step for step in found.plan if "half" in step.what]
 

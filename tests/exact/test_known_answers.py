@@ -222,7 +222,7 @@ def test_no_other_end(name: str, interval: dict[str, Any]) -> None:
     window = slice.axes[1 - base]
     low, high = from_fraction(window.low), from_fraction(window.high)
     fibres = [
-        curve(n, from_plane(p), base).fibre(from_fraction(Fraction(value)))
+        curve(n, from_plane(p), base).polynomial_over(from_fraction(Fraction(value)))
         for n, p in enumerate(visible(name))
     ]
     roots = disjoint(

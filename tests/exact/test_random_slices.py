@@ -92,7 +92,9 @@ def at_the_variety(
         for number, component in enumerate(result.components):
             if component.left_out or component.polynomial.degrees[1 - base] == 0:
                 continue
-            fibre = curve(number, from_plane(component.polynomial), base).fibre(from_fraction(u))
+            fibre = curve(number, from_plane(component.polynomial), base).polynomial_over(
+                from_fraction(u)
+            )
             if not fibre:
                 continue  # the line is the component
             for root in isolate(squarefree_part(fibre), low, high):

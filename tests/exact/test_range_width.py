@@ -103,7 +103,7 @@ def by_hand(low: object, high: object, left: int, right: int) -> RangeStrip:
     fibre = (fmpq(-10), fmpq(10))
     lower, upper = curve(0, low, 0), curve(1, high, 0)
     middle = fmpq(left + right, 2) + fmpq(1, 7)
-    last = len(isolate(lower.fibre(middle), *fibre)) - 1
+    last = len(isolate(lower.polynomial_over(middle), *fibre)) - 1
     return RangeStrip(
         BaseEnd(fmpq(left), None, None),
         BaseEnd(fmpq(right), None, None),

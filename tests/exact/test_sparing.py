@@ -54,7 +54,7 @@ def test_members_of_a_family_too() -> None:
 def test_only_what_is_proved_to_be_joined_shares_a_count(monkeypatch: pytest.MonkeyPatch) -> None:
     """Fig. 4 has regions that a curve parts although counts are equal: these are counted apart."""
     found: list[tuple[int, ...]] = []
-    whole = stages.counts_by_component
+    whole = stages.counts_of_parts
 
     def noted(
         problem: object, stacks: object, component_of: tuple[int, ...], report: object
@@ -62,7 +62,7 @@ def test_only_what_is_proved_to_be_joined_shares_a_count(monkeypatch: pytest.Mon
         found.append(component_of)
         return whole(problem, stacks, component_of, report)  # type: ignore[arg-type]
 
-    monkeypatch.setattr("ptmcad.exact.exactmap.counts_by_component", noted)
+    monkeypatch.setattr("ptmcad.exact.exactmap.counts_of_parts", noted)
     result = region_map(load(CONFIGS / "fig4.yaml"), SPARING)
     (component_of,) = found
     for link in result.adjacencies:

@@ -25,12 +25,12 @@ from ptmcad.algebra.curve_branches import TooFewBits
 from ptmcad.algebra.polynomials import PLANE, coefficients_in
 from ptmcad.algebra.puiseux import puiseux_integral
 from ptmcad.algebra.real_roots import has_root_between, isolate, sign_at, squarefree_part
-from ptmcad.exact.cad.area import RegionStacks, region_areas
+from ptmcad.exact.areas.area import RegionStacks, region_areas
+from ptmcad.exact.areas.regionareas import before, below
 from ptmcad.exact.cad.crossings import Separator, cross
+from ptmcad.exact.cad.decomposition import region_numbers
 from ptmcad.exact.cad.projection import FibredCurve, curve, project
 from ptmcad.exact.cad.stacks import StackData, lift
-from ptmcad.exact.decomposition import merge
-from ptmcad.exact.regionareas import before, below
 from ptmcad.text.flint_numbers import from_fraction, to_fraction
 
 X, Y = PLANE.gens()
@@ -81,7 +81,7 @@ def decompose(polynomials: Sequence[fmpz_mpoly], window: Window, base: int) -> D
             check_separator(curves, p, stacks[s], stacks[s + 1])
             if not closed:
                 links.append((starts[s] + p.left, starts[s + 1] + p.right, None))
-    merged = merge([0] * starts[-1], links)
+    merged = region_numbers([0] * starts[-1], links)
     pieces = [merged[a:b] for a, b in pairwise(starts)]
     return Decomposition(curves, stacks, crossings, pieces, inner, outer)
 
@@ -419,7 +419,7 @@ def test_areas_of_a_window_beside_the_origin_are_those_of_a_half(name: str) -> N
 
 
 def _below(c: FibredCurve, u: fmpq, low: fmpq, v: fmpq) -> Sequence[object]:
-    return isolate(squarefree_part(c.fibre(u)), low, v)
+    return isolate(squarefree_part(c.polynomial_over(u)), low, v)
 
 
 SYMMETRIC = {

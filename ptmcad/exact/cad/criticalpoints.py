@@ -90,20 +90,22 @@ class PointsOver:
         """
         with ctx.workprec(2 * bits + 64):
             abscissa = refine(self.root, fmpq(1, 1 << bits)).ball
-            groups = []
+            discs: list[RootDisc] = []
+            groups: list[range] = []
             for k, c in enumerate(self.curves):
                 group = clusters_over(c.in_v, abscissa)
                 if group is None or not self._are_points(k, group):
                     return None
-                groups.append(group)
-            same: list[tuple[RootDisc, RootDisc]] = []
+                groups.append(range(len(discs), len(discs) + len(group)))
+                discs += group
+            same: set[tuple[int, int]] = set()
             for (k, one), (m, other) in combinations(enumerate(groups), 2):
-                meeting = [(c, d) for c in one for d in other if c.meets(d)]
+                meeting = {(i, j) for i in one for j in other if discs[i].meets(discs[j])}
                 # where they have a root in common, it is in the only place where it can be
                 if len(meeting) > 1 or (meeting and not self._meet(k, m)):
                     return None
-                same += meeting
-            return _merged([c for group in groups for c in group if c.is_real], same)
+                same |= meeting
+            return _merged(discs, same)
 
     def _are_points(self, k: int, group: Sequence[RootDisc]) -> bool:
         """Whether each disc of a curve is known to hold one root only, as often as it counts."""
@@ -143,22 +145,22 @@ def _discriminant(c: FibredCurve, check: Check) -> UnivariatePolynomial:
     return found if deflation(c.in_v) == 1 else found * c.in_v[0] * c.in_v[-1]
 
 
-def _merged(
-    found: Sequence[RootDisc], same: Sequence[tuple[RootDisc, RootDisc]]
-) -> list[Interval] | None:
-    """The discs' intervals, those of discs with the same point as one; None where others meet, by
-    their rounding.
+def _merged(discs: Sequence[RootDisc], same: set[tuple[int, int]]) -> list[Interval] | None:
+    """The intervals of real discs, those of discs with the same point as one; None where others
+    meet, by their rounding.
+
+    Parameters
+    ----------
+    same : the numbers of two discs with one point, the smaller one first.
     """
-    merged: list[tuple[Interval, list[RootDisc]]] = []
-    for cluster in sorted(found, key=lambda c: c.extent[0]):
-        low, high = cluster.extent
+    extents = {n: disc.extent for n, disc in enumerate(discs) if disc.is_real}
+    merged: list[tuple[Interval, list[int]]] = []
+    for n, (low, high) in sorted(extents.items(), key=lambda numbered: numbered[1][0]):
         if not merged or low > merged[-1][0][1]:
-            merged.append(((low, high), [cluster]))
+            merged.append(((low, high), [n]))
             continue
         (start, end), members = merged.pop()
-        if not any(
-            {id(cluster), id(member)} == {id(c), id(d)} for member in members for c, d in same
-        ):
+        if not any((min(n, m), max(n, m)) in same for m in members):
             return None
-        merged.append(((start, max(high, end)), [*members, cluster]))
+        merged.append(((start, max(high, end)), [*members, n]))
     return [interval for interval, _ in merged]

@@ -56,7 +56,7 @@ class FibredCurve(NamedTuple):
     on_horizontals: Restrictions
     reflection: Reflection | None
 
-    def fibre(self, u: fmpq) -> UnivariatePolynomial:
+    def polynomial_over(self, u: fmpq) -> UnivariatePolynomial:
         """A positive multiple of p(u, v) in Z[v]."""
         return self.on_fibres.at(u)
 
@@ -69,9 +69,11 @@ class FibredCurve(NamedTuple):
             When one of them is multiple, as it is over critical abscissae only.
         """
         if self.reflection is None or len(self.in_v) <= _LONG_FIBRE:
-            return isolate(self.fibre(u), *fibre)
+            return isolate(self.polynomial_over(u), *fibre)
         axis, squares = self.reflection
-        return isolate_reflected(self.fibre(u), squares.at(u), axis(u), int(axis.denom()), *fibre)
+        return isolate_reflected(
+            self.polynomial_over(u), squares.at(u), axis(u), int(axis.denom()), *fibre
+        )
 
     def trace(self, v: fmpq) -> UnivariatePolynomial:
         """A positive multiple of p(u, v) in Z[u]."""

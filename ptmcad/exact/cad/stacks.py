@@ -13,7 +13,15 @@ from typing import NamedTuple
 from flint import fmpq
 
 from ptmcad.algebra.polynomials import UnivariatePolynomial
-from ptmcad.algebra.real_roots import Interval, RealRoot, disjoint, gaps, inside, isolate, sign_at
+from ptmcad.algebra.real_roots import (
+    Interval,
+    RealRoot,
+    gaps,
+    inside,
+    isolate,
+    numbered_disjoint,
+    sign_at,
+)
 from ptmcad.answer.regionmap import Wall
 from ptmcad.exact.cad.projection import FibredCurve
 from ptmcad.text.flint_numbers import simplest_between
@@ -64,21 +72,13 @@ def roots_over(
 
     The isolating intervals are pairwise disjoint, ends included.
     """
-    found: list[tuple[Wall, RealRoot]] = []
-    for c in curves:
-        found += [(Wall(c.component, k), r) for k, r in enumerate(c.roots_over(u, fibre))]
-    if len(found) < 2:
-        return tuple(found)
-    separate = disjoint([r for _, r in found])
-    # the refined intervals keep their polynomial; match them to their walls by component and order
-    result = []
-    counters: dict[int, int] = {}
-    labels = {id(r.polynomial): w.component for w, r in found}
-    for r in separate:
-        component = labels[id(r.polynomial)]
-        result.append((Wall(component, counters.get(component, 0)), r))
-        counters[component] = counters.get(component, 0) + 1
-    return tuple(result)
+    found = [
+        (Wall(c.component, k), root)
+        for c in curves
+        for k, root in enumerate(c.roots_over(u, fibre))
+    ]
+    ordered = numbered_disjoint([root for _, root in found])
+    return tuple((found[number][0], root) for number, root in ordered)
 
 
 def lift(
@@ -103,7 +103,9 @@ def lift(
     for left, right in pairwise(ends):
         sample = _simplest_off(left.high, right.low, lines)
         roots = roots_over(curves, sample, fibre)
-        heights = heights_between([r for _, r in roots], fibre, [c.fibre(sample) for c in avoided])
+        heights = heights_between(
+            [r for _, r in roots], fibre, [c.polynomial_over(sample) for c in avoided]
+        )
         stacks.append(StackData(left, right, sample, tuple(w for w, _ in roots), heights))
     return tuple(stacks)
 
@@ -128,4 +130,4 @@ def _simplest_off(low: fmpq, high: fmpq, avoided: Sequence[UnivariatePolynomial]
 
 def level_at(curves: Sequence[FibredCurve], u: fmpq, v: fmpq, fibre: Interval) -> int:
     """The number of walls below a point, over an abscissa that is not critical."""
-    return sum(len(isolate(c.fibre(u), fibre[0], v)) for c in curves)
+    return sum(len(isolate(c.polynomial_over(u), fibre[0], v)) for c in curves)

@@ -26,9 +26,9 @@ from ptmcad.algebra.polynomials import (
     add_ratios,
     common_factor,
     constant_like,
+    evaluate,
     from_expression,
     lcm,
-    point_values,
     ratio,
 )
 from ptmcad.algebra.trigonometric_ring import (
@@ -158,7 +158,10 @@ class SystemOnAxes(NamedTuple):
         """The parameters at a rational point; `ZeroDivisionError` where a denominator vanishes
         there.
         """
-        return point_values(self.parameters, at)
+        return {
+            name: evaluate(above, *at) / evaluate(below, *at)
+            for name, (above, below) in self.parameters.items()
+        }
 
 
 def on_axes(system: ParametricSystem, expressions: Mapping[str, Expression]) -> SystemOnAxes:

@@ -113,7 +113,7 @@ def critical_values(line: Line) -> tuple[tuple[AlgebraicNumber, Component], ...]
     window = (interval_of(line.along), (fmpq(0), fmpq(1)))
     where = equalities(line.at, shortest_text)
     try:
-        variety = discriminant_variety(on, window, frozenset({"infinity"}))
+        components, _, _ = discriminant_variety(on, window, frozenset({"infinity"}))
     except DegenerateSliceError as error:
         told = with_folds(error, line.model, on, points(window))
         if told is not error:
@@ -128,7 +128,7 @@ def critical_values(line: Line) -> tuple[tuple[AlgebraicNumber, Component], ...]
             "ones included); fix another value"
         ) from error
     numbers, parts = [], {}
-    for component in variety.components:
+    for component in components:
         if not component.left_out:
             for number in roots_in(component.polynomial, low, high):
                 numbers.append(number)

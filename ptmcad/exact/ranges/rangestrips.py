@@ -154,7 +154,7 @@ def at_abscissa(branch: RangeEnd, u: fmpq, fibre: Interval, width: fmpq) -> Real
     """The branch's value at a rational abscissa of the strip, isolated within ``width``."""
     if branch.curve is None:
         return RealRoot.of(branch.edge)
-    p = branch.curve.fibre(u)
+    p = branch.curve.polynomial_over(u)
     return refine(isolate(p, *fibre)[branch.root], width)
 
 

@@ -49,7 +49,7 @@ def limit(branch: RangeEnd, strip: RangeStrip, end: BaseEnd, width: fmpq) -> End
     at = end_interval(end, width)
     distance = strip.sample - at[0]
     if at[0] == at[1]:
-        fibre = branch.curve.fibre(at[0])
+        fibre = branch.curve.polynomial_over(at[0])
     else:
         assert end.root is not None
         fibre = resultant(

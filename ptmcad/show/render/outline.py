@@ -25,7 +25,7 @@ from numpy.typing import NDArray
 from ptmcad.algebra.polynomials import UnivariatePolynomial
 from ptmcad.algebra.real_roots import refine
 from ptmcad.answer.regionmap import RegionMap, Stack
-from ptmcad.exact.cad.polyline import critical_shares
+from ptmcad.exact.boundaries.polyline import critical_shares
 from ptmcad.exact.cad.projection import FibredCurve, by_component, curves_of, lines_of
 from ptmcad.show.render.polylines import simplified_line
 from ptmcad.show.render.view import CellShape, Floats, Interval, View, WallShape, remembered

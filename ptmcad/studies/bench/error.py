@@ -6,7 +6,7 @@ computed in floating point, with `ROUNDING` allowed for in areas and no proof th
 They are a benchmark's figures, and no count rests on them. docs/error.md has the definitions.
 
 The truth is an exact map, whose walls between regions are within proved distances of polylines
-(`ptmcad.exact.cad.polyline`). A drawn map is made of pieces, rectangles with the count that is shown:
+(`ptmcad.exact.boundaries.polyline`). A drawn map is made of pieces, rectangles with the count that is shown:
 pixels of a grid, or the parts of a certified map's window that its cover leaves. In a piece the
 area of a region is the sum of the areas below the walls that the region is below, less those below
 the walls that it is above; below a chord that is the integral of a clipped linear function.
@@ -27,8 +27,8 @@ from ptmcad.answer.regionmap import RegionMap, Status
 from ptmcad.ask.location import component_cells
 from ptmcad.cover.subdivision import COVERED, FREE, repeated
 from ptmcad.errors import LimitReached
-from ptmcad.exact.cad.polyline import WallPolyline, chains, critical_shares
-from ptmcad.exact.decomposition import merge
+from ptmcad.exact.boundaries.polyline import WallPolyline, chains, critical_shares
+from ptmcad.exact.cad.decomposition import region_numbers
 from ptmcad.text.numerals import decimal
 
 Floats = NDArray[np.float64]
@@ -141,7 +141,9 @@ def truth(
     """What separates regions when each cell shows a number; `ends` are those of the stacks' parts
     of the base.
     """
-    region_of = merge(shown, [(a.first, a.second, a.component) for a in result.adjacencies])
+    region_of = region_numbers(
+        shown, [(a.first, a.second, a.component) for a in result.adjacencies]
+    )
     counts = dict(zip(region_of, shown, strict=True))
     stacks = []
     for stack, of_stack, (left, right) in zip(result.stacks, lines, pairwise(ends), strict=True):

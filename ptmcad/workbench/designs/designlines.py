@@ -284,8 +284,8 @@ def space_of_slice(problem: SliceProblem, along: int, working: int) -> Space:
     InfiniteSolutionsError, DegenerateSliceError, NothingToCountError
         When every point is exceptional.
     """
-    variety = discriminant_variety(problem.on, problem.window)
-    found = [from_plane(c.polynomial) for c in variety.components if not c.left_out]
+    components, _, _ = discriminant_variety(problem.on, problem.window)
+    found = [from_plane(c.polynomial) for c in components if not c.left_out]
     return _space(problem.on, found, problem.slice.axis_names, problem.window, along, working)
 
 

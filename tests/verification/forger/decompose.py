@@ -14,8 +14,8 @@ from fractions import Fraction
 from forger.consistency import NO_AREAS, settled, with_plan
 from ptmcad.answer.regionmap import Component, RegionMap
 from ptmcad.errors import HypothesisError
+from ptmcad.exact.cad.decomposition import Sample, crossings_of, cut_along, neighbours_of, seen_from
 from ptmcad.exact.counting import Equilibria
-from ptmcad.exact.decomposition import Sample, crossings_of, cut_along, neighbours_of, seen_from
 from ptmcad.exact.mapassembly import PartialMap, assemble
 from ptmcad.exact.stages import Cells, SliceProblem, problem_of, with_keys
 from ptmcad.options import Options

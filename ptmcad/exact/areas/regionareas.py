@@ -11,7 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from fractions import Fraction
-from itertools import pairwise
+from itertools import accumulate, pairwise
 from math import prod
 
 from flint import fmpq
@@ -20,18 +20,18 @@ from ptmcad.algebra.arcs import on_graph
 from ptmcad.algebra.polynomials import RationalUnivariate, UnivariatePolynomial
 from ptmcad.algebra.real_roots import (
     RealRoot,
-    disjoint,
     halve,
     inside,
     isolate,
+    numbered_disjoint,
     order,
     squarefree_part,
 )
 from ptmcad.algebra.resultants import Check
 from ptmcad.answer.regionmap import Wall
-from ptmcad.exact.cad.area import RegionStacks, region_areas
+from ptmcad.exact.areas.area import RegionStacks, region_areas
+from ptmcad.exact.cad.decomposition import Decomposition, members
 from ptmcad.exact.cad.stacks import BaseEnd, StackData, level_at
-from ptmcad.exact.decomposition import Decomposition, members
 from ptmcad.exact.stages import Areas, Cells, SliceProblem
 from ptmcad.model.involutions import Involution
 from ptmcad.text.flint_numbers import from_fraction, simplest_between, to_fraction
@@ -47,30 +47,25 @@ def areas_of(
     ----------
     tolerance : largest relative width of each region's bounds before they are written in decimals.
     """
-    base, region_of = cells.cut.variety.base, cells.neighbours.region_of
-    alone = "equal-counts" in without
-    parts = region_stacks(cells.cut, range(len(region_of)) if alone else region_of)
-    # the halves before and behind an abscissa need no cuts, and are the cheapest
-    reflections = sorted(
-        problem.reflections, key=lambda change: (change.axes, change.axis_signs[base])
-    )
-    used: Involution | None = None
-    if reflections and not alone:
-        images = _images(cells, reflections[0])
-        if images is not None:
-            used = reflections[0]
-            parts = _half(parts._replace(images=images), used, base)
-    bounds, bits = region_areas(parts, tolerance, check)
-    if alone:
-        bounds = tuple(
-            _sum_of([bounds[n] for n in region], problem.slice.area)
+    region_of = cells.neighbours.region_of
+    if "equal-counts" in without:
+        each_cell = region_stacks(cells.cut, range(len(region_of)))
+        of_cells, bits = region_areas(each_cell, tolerance, check)
+        sums = (
+            _sum_of([of_cells[n] for n in region], problem.slice.area)
             for region in members(region_of)
         )
-    rounded = (
-        (fraction_of(decimal(low, up=False)), fraction_of(decimal(high, up=True)))
-        for low, high in bounds
-    )
-    return Areas(tuple(rounded), bits, used)
+        return Areas(tuple(map(_in_decimals, sums)), bits)
+    whole = region_stacks(cells.cut, region_of)
+    half, change = _half_of(whole, cells, problem.reflections)
+    bounds, bits = region_areas(half, tolerance, check)
+    return Areas(tuple(map(_in_decimals, bounds)), bits, change)
+
+
+def _in_decimals(bounds: tuple[Fraction, Fraction]) -> tuple[Fraction, Fraction]:
+    """The bounds rounded outwards."""
+    low, high = bounds
+    return fraction_of(decimal(low, up=False)), fraction_of(decimal(high, up=True))
 
 
 def region_stacks(cut: Decomposition, regions: Iterable[int]) -> RegionStacks:
@@ -86,15 +81,28 @@ def _sum_of(
     )
 
 
-def _half(parts: RegionStacks, change: Involution, base: int) -> RegionStacks:
-    """The half of the window that an involution, which moves some points, maps to the other one."""
+def _half_of(
+    whole: RegionStacks, cells: Cells, reflections: Sequence[Involution]
+) -> tuple[RegionStacks, Involution | None]:
+    """The half of the window that an involution maps to the other one, and the involution; the
+    whole where there is none, or where it is not seen what it maps regions to.
+    """
+    base = cells.cut.variety.base
+    # the halves before and behind an abscissa need no cuts, and are the cheapest
+    change = min(reflections, key=lambda c: (c.axes, c.axis_signs[base]), default=None)
+    images = None if change is None else _images(cells, change)
+    if change is None or images is None:
+        return whole, None
+    parts = whole._replace(images=images)
     shift = from_fraction(change.shifts[base])
     if change.axes == (1, 0):  # the points are fixed where v = sign (u - shift)
         sign = change.axis_signs[base]
-        return below(parts, RationalUnivariate([-sign * shift, sign]))
-    if change.axis_signs[base] < 0:
-        return before(parts, shift / 2)
-    return below(parts, RationalUnivariate([from_fraction(change.shifts[1 - base]) / 2]))
+        half = below(parts, RationalUnivariate([-sign * shift, sign]))
+    elif change.axis_signs[base] < 0:
+        half = before(parts, shift / 2)
+    else:
+        half = below(parts, RationalUnivariate([from_fraction(change.shifts[1 - base]) / 2]))
+    return half, change
 
 
 def _images(cells: Cells, change: Involution) -> tuple[int, ...] | None:
@@ -144,24 +152,24 @@ def below(parts: RegionStacks, line: RationalUnivariate) -> RegionStacks:
     too.
     """
     ends = [stack.right.root for stack in parts.stacks if stack.right.root]
-    crossings = squarefree_part(
-        prod(
-            (q for c in parts.curves if (q := on_graph(c.in_v, line))),
-            start=UnivariatePolynomial([1]),
-        )
-    )
-    for polynomial in {id(r.polynomial): r.polynomial for r in ends}.values():
-        crossings //= crossings.gcd(polynomial)
-    roots = inside(disjoint([*ends, *isolate(crossings, *parts.base)]), parts.base)
-    places = [BaseEnd(parts.base[0], None, None), *(BaseEnd(r.middle, r, None) for r in roots)]
-    stacks, rows, number = [], [], 0
-    for left, right in pairwise([*places, BaseEnd(parts.base[1], None, None)]):
+    on_line = (q for c in parts.curves if (q := on_graph(c.in_v, line)))
+    crossings = squarefree_part(prod(on_line, start=UnivariatePolynomial([1])))
+    for k, end in enumerate(ends):
+        if k == 0 or end.polynomial != ends[k - 1].polynomial:
+            crossings //= crossings.gcd(end.polynomial)
+    numbered = numbered_disjoint([*ends, *isolate(crossings, *parts.base)])
+    cuts = inside([root for _, root in numbered], parts.base)
+    edges = [BaseEnd(edge, None, None) for edge in parts.base]
+    places = [edges[0], *(BaseEnd(cut.middle, cut, None) for cut in cuts), edges[1]]
+    # the numbers of the abscissae come first: behind each of them the next stack begins
+    begun = accumulate((number < len(ends) for number, _ in numbered), initial=0)
+    stacks, rows = [], []
+    for (left, right), number in zip(pairwise(places), begun, strict=True):
         walls, heights = parts.stacks[number].walls, parts.stacks[number].heights
         stack = _between(left, right, walls, heights)
         level = level_at(parts.curves, stack.sample, line(stack.sample), parts.fibre)
         stacks.append(stack._replace(walls=walls[:level], heights=heights[: level + 1]))
         rows.append(parts.regions[number][: level + 1])
-        number += right.root is not None and right.root.polynomial is not crossings
     return parts._replace(stacks=stacks, regions=rows, ceiling=line)
 
 

@@ -22,7 +22,7 @@ from ptmcad.algebra.curve_branches import TooFewBits
 from ptmcad.algebra.polynomials import RationalUnivariate
 from ptmcad.algebra.real_roots import Interval, RealRoot, refine
 from ptmcad.algebra.resultants import Check, nothing
-from ptmcad.exact.cad.panels import Border, PanelEffort, WallPanel, halves, panels
+from ptmcad.exact.areas.panels import Border, PanelEffort, WallPanel, halves, panels
 from ptmcad.exact.cad.projection import FibredCurve, by_component, max_height_bits
 from ptmcad.exact.cad.stacks import StackData
 from ptmcad.text.balls import exact

@@ -1,7 +1,7 @@
-"""Walls as chains of chords, each with a proved distance that the wall keeps to it.
+"""Walls as polylines, each with a proved distance that the wall keeps to it.
 
-Guarantee: over its part of the base each wall stays within `Chord.distance` of its chord, measured
-along the fibre. Over the whole open interval of its stack it stays within `WallPolyline.distance`.
+Guarantee: over the whole open interval of its stack each wall stays within `WallPolyline.distance`
+of its polyline, measured along the fibre.
 
 On a panel that holds no critical value a wall is the graph of a function with two derivatives. If
 its second derivative is at most K in modulus there, a panel of width w has the graph within K
@@ -49,21 +49,17 @@ UNPROVED = Fraction(1)
 
 
 @dataclass(frozen=True, slots=True)
-class Chord:
-    """A segment from (left, at_left) to (right, at_right); coordinates are shares of the window,
-    from 0 to 1.
+class WallPolyline:
+    """A wall as a polyline; coordinates are shares of the window along the base and along the
+    fibre.
 
     Attributes
     ----------
-    left, right : along the base.
-    at_left, at_right : along the fibre.
+    points : from left to right.
     distance : the wall's largest distance, along the fibre.
     """
 
-    left: Fraction
-    right: Fraction
-    at_left: Fraction
-    at_right: Fraction
+    points: tuple[tuple[Fraction, Fraction], ...]
     distance: Fraction
 
 
@@ -95,8 +91,8 @@ def chords(
     max_distance: Fraction,
     narrowest: Fraction,
     check: Check = nothing,
-) -> tuple[Chord, ...]:
-    """A wall from left to right without gaps.
+) -> WallPolyline:
+    """A part of a wall, by its chords over panels.
 
     Parameters
     ----------
@@ -107,7 +103,6 @@ def chords(
         one, the distance to its chord is `UNPROVED`, which always holds.
     check : called between panels; may raise to stop.
     """
-    found: list[Chord] = []
     heights: dict[Fraction, Fraction] = {}
 
     def place(share: Fraction) -> Fraction:
@@ -115,6 +110,7 @@ def chords(
             heights[share] = wall.share_at(share)
         return heights[share]
 
+    points, reached = [(span[0], place(span[0]))], Fraction(0)
     waiting = [span]
     while waiting:
         check()
@@ -128,8 +124,9 @@ def chords(
             waiting += [(middle, right), (left, middle)]
         else:
             known = UNPROVED if distance is None else min(distance + ROUNDING, UNPROVED)
-            found.append(Chord(left, right, place(left), place(right), known))
-    return tuple(found)
+            reached = max(reached, known)
+            points.append((right, place(right)))
+    return WallPolyline(tuple(points), reached)
 
 
 def _distance(wall: WallBranch, panel: Span) -> Fraction | None:
@@ -212,21 +209,6 @@ times shorter.
 """
 
 
-@dataclass(frozen=True, slots=True)
-class WallPolyline:
-    """A wall as a polyline; coordinates are shares of the window along the base and along the
-    fibre.
-
-    Attributes
-    ----------
-    points : from left to right.
-    distance : the wall's largest distance, along the fibre.
-    """
-
-    points: tuple[tuple[Fraction, Fraction], ...]
-    distance: Fraction
-
-
 def chains(
     result: RegionMap, tolerance: Fraction, check: Check = nothing
 ) -> tuple[tuple[WallPolyline, ...], ...]:
@@ -271,7 +253,7 @@ def _goes_on(wall: WallBranch, end: Span, number: int) -> bool:
     """
     if end[0] != end[1] or end[0] not in (0, 1):
         return False
-    p = wall.curve.fibre(wall.base[int(end[0])])
+    p = wall.curve.polynomial_over(wall.base[int(end[0])])
     if any(sign_at(p, v) == 0 for v in wall.fibre) or p.gcd(p.derivative()).degree() > 0:
         return False
     return len(isolate(p, *wall.fibre)) == number
@@ -312,13 +294,13 @@ def _chain(
     width = right[0] - left[1]
     start, first = _level(wall, left, width, tolerance)
     end, last = _level(wall, right, -width, tolerance)
-    parts = chords(wall, (start, end), tolerance, _NARROWEST * width, check)
-    points = [(start, parts[0].at_left), *((c.right, c.at_right) for c in parts)]
+    inner = chords(wall, (start, end), tolerance, _NARROWEST * width, check)
+    points = inner.points
     if not left[2]:
-        points.insert(0, ((left[0] + left[1]) / 2, parts[0].at_left))
+        points = (((left[0] + left[1]) / 2, points[0][1]), *points)
     if not right[2]:
-        points.append(((right[0] + right[1]) / 2, parts[-1].at_right))
-    return WallPolyline(tuple(points), max(first, last, *(c.distance for c in parts)))
+        points = (*points, ((right[0] + right[1]) / 2, points[-1][1]))
+    return WallPolyline(points, max(first, last, inner.distance))
 
 
 def _level(

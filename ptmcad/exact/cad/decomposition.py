@@ -34,7 +34,7 @@ Link = tuple[int, int, int | None]
 """Two cells that share an open arc, and the variety's component on it, or None."""
 
 
-def merge(keys: Sequence[Hashable], links: Sequence[Link]) -> tuple[int, ...]:
+def region_numbers(keys: Sequence[Hashable], links: Sequence[Link]) -> tuple[int, ...]:
     """The region of every cell, numbered from 0 in the order of their first cells.
 
     Parameters
@@ -108,9 +108,9 @@ class Variety(NamedTuple):
 
 def seen_from(
     components: Sequence[Component],
-    base: int | None = None,
     complex_solutions: int = 0,
     excludes: bool = False,
+    base: int | None = None,
 ) -> Variety:
     """Components over a base axis; over that of the cheaper decomposition when None."""
     views = [curves_of(components, axis) for axis in (0, 1)]
@@ -173,7 +173,7 @@ class Decomposition(NamedTuple):
         """
         u, v = at[self.variety.base], at[1 - self.variety.base]
         sides = [order(u, r) for r in self.projection.abscissae]
-        if 0 in sides or any(sign_at(c.fibre(u), v) == 0 for c in self.variety.curves):
+        if 0 in sides or any(sign_at(c.polynomial_over(u), v) == 0 for c in self.variety.curves):
             return None
         first = self.first_cells[sides.count(1)]
         return first + level_at(self.variety.curves, u, v, self.fibre)
@@ -257,7 +257,7 @@ def neighbours_of(
         When the counts contradict the decomposition.
     """
     adjacencies = tuple(adjacencies_of(cut, crossings, keys))
-    region_of = merge(keys, [(a.first, a.second, a.component) for a in adjacencies])
+    region_of = region_numbers(keys, [(a.first, a.second, a.component) for a in adjacencies])
     return Neighbours(crossings, adjacencies, region_of)
 
 
@@ -271,7 +271,7 @@ def joined_cells(cut: Decomposition, crossings: Sequence[Crossing]) -> tuple[int
     """
     keys = [()] * len(cut.points)
     links = adjacencies_of(cut, crossings, keys)
-    return merge(keys, [(a.first, a.second, None) for a in links if a.component is None])
+    return region_numbers(keys, [(a.first, a.second, None) for a in links if a.component is None])
 
 
 def adjacencies_of(

@@ -1,0 +1,1 @@
+"""Areas of regions: walls integrated on panels, with proved errors."""
