@@ -28,6 +28,7 @@ from ptmcad.text.numerals import shortest_text
 from ptmcad.text.parsing import parse
 from ptmcad.text.syntax import names_in
 from ptmcad.verification.derivation import parameters_of
+from ptmcad.verification.parameterclaims import explained
 from ptmcad.verification.parameterlines import NotKnown, ParameterLine, SliceLines, check_maxima
 from ptmcad.verification.report import (
     Check,
@@ -78,26 +79,14 @@ class _DesignLines:
 
     def _parameters(self, known: dict[str, Expression]) -> dict[str, Expression]:
         """The model's parameters, by what the document and the model say of them."""
-        model, texts = self.found.model, self.found.parameters
-
-        def value_of(name: str, chain: tuple[str, ...] = ()) -> Expression:
-            if name not in known:
-                text = texts.get(name) or (
-                    model.parameters[name].default if name in model.parameters else ""
-                )
-                if not text or name in chain:
-                    raise Violation(f"nothing says what {name[:40]!r} is")
-                try:
-                    known[name] = parse(
-                        text, {n: value_of(n, (*chain, name)) for n in names_in(text)}
-                    )
-                except ExpressionError as error:
-                    raise Violation(
-                        f"the text kept for {name[:40]!r} is no expression: {error}"
-                    ) from error
-            return known[name]
-
-        return {name: value_of(name) for name in parameters_of(model)}
+        model = self.found.model
+        texts = {name: of.default for name, of in model.parameters.items()} | self.found.parameters
+        texts = {name: text for name, text in texts.items() if text and name not in known}
+        values = known | explained(texts, known)
+        for name in parameters_of(model):
+            if name not in values:
+                raise Violation(f"nothing says what {name[:40]!r} is")
+        return {name: values[name] for name in parameters_of(model)}
 
     def excesses(self, design: Mapping[str, Expression]) -> list[Expression]:
         """What is not positive where the conditions are satisfied, as they are written.

@@ -12,7 +12,7 @@ points of a line.
 from __future__ import annotations
 
 import random
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from fractions import Fraction
 from itertools import product
 
@@ -77,16 +77,24 @@ def check_text(claims: Claims) -> str:
 
 
 def written(slice: Slice) -> dict[str, Expression]:
-    """What each text says, by the axes and by texts explained before it.
+    """What each text of a slice says, as functions of its axes.
+
+    Raises
+    ------
+    Violation
+    """
+    return explained(slice.text, {name: axis(k) for k, name in enumerate(slice.axis_names)})
+
+
+def explained(texts: Mapping[str, str], known: Mapping[str, Expression]) -> dict[str, Expression]:
+    """What each text says, by what is known and by texts explained before it.
 
     Raises
     ------
     Violation
         When one is no expression, or names what is not explained.
     """
-    known = {slice.axis_names[0]: axis(0), slice.axis_names[1]: axis(1)}
-    found = {}
-    waiting = dict(slice.text)
+    known, found, waiting = dict(known), {}, dict(texts)
     while waiting:
         # one whose names are all known by now, so that nothing is explained by itself
         ready = next((n for n, text in waiting.items() if _names(n, text) <= known.keys()), None)

@@ -28,6 +28,7 @@ from ptmcad.verification.normalform.boxes import (
     Zero,
     disjoint,
     halves,
+    in_words,
     inside,
     within,
 )
@@ -280,8 +281,7 @@ def zeros(
                     continue
         parts = halves(box, _widest(box, whole), least)
         if parts is None:
-            where = ", ".join(f"{x:.6g}" for x in box[0])
-            raise Unproved(f"a solution near ({where}) may be degenerate")
+            raise Unproved(f"a solution near ({in_words(box[0])}) may be degenerate")
         waiting += parts
     return found
 
@@ -307,8 +307,7 @@ def _persisting(field: BallEquations, zero: Zero, whole: Floats) -> Zero:
     """The solution for all parameters that one for some parameters belongs to."""
     persisting = proved(field, zero.center, _shapes(zero.alone, whole))
     if persisting is None:
-        where = ", ".join(f"{x:.6g}" for x in zero.center)
-        raise Unproved(f"the solution near ({where}) may not persist")
+        raise Unproved(f"the solution near ({in_words(zero.center)}) may not persist")
     return persisting
 
 

@@ -19,10 +19,10 @@ from __future__ import annotations
 import random
 from bisect import bisect_right
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
 from fractions import Fraction
 from itertools import accumulate, product
 from math import ceil, isqrt
+from typing import NamedTuple
 
 from ptmcad.cover.rectangles import Rectangle
 from ptmcad.verification.certified.cellsamples import HOPELESS
@@ -50,8 +50,7 @@ lattice steps times the number of squares side by side, in which squares begin a
 numbers."""
 
 
-@dataclass(frozen=True, slots=True)
-class SampleBox:
+class _SampleBox(NamedTuple):
     """A box in lattice steps, within one cell: its middle and half its width (0 where there is no
     room).
     """
@@ -100,8 +99,8 @@ def check_boxes(
         if not with_box:
             missing += there is None
             continue
-        half = None if there is None else _constant_over(claims, box, there)
-        if half is not None:
+        half = Fraction(0) if there is None else _constant_over(claims, box, there)
+        if half:
             proved += 1
             area += (2 * half / claims.sweep.steps) ** 2
             continue
@@ -125,7 +124,7 @@ def _side(number: int) -> int:
 
 def _by_area(
     claims: CertifiedClaims, rng: random.Random, number: int
-) -> tuple[list[SampleBox], int]:
+) -> tuple[list[_SampleBox], int]:
     """A point in each square of the grid, in random order; and the number of squares in which none
     was met with.
     """
@@ -145,7 +144,7 @@ def _by_area(
     return found, without
 
 
-def _beside(claims: CertifiedClaims, rng: random.Random, number: int) -> list[SampleBox]:
+def _beside(claims: CertifiedClaims, rng: random.Random, number: int) -> list[_SampleBox]:
     """Points beside rectangles, as many as boxes: from one square of the grid after the other, in
     random order.
     """
@@ -156,7 +155,7 @@ def _beside(claims: CertifiedClaims, rng: random.Random, number: int) -> list[Sa
         k: list(accumulate(right - left + top - bottom for left, right, bottom, top in edges[k]))
         for k in order
     }
-    found: list[SampleBox] = []
+    found: list[_SampleBox] = []
     while order and len(found) < number:
         for k in list(order):
             if len(found) == number:
@@ -213,7 +212,7 @@ def _uniform(rng: random.Random) -> Fraction:
     return Fraction(2 * rng.randrange(MIN_WINDOW_PARTS) + 1, 2 * MIN_WINDOW_PARTS)
 
 
-def _free(claims: CertifiedClaims, u: Fraction, v: Fraction) -> SampleBox | None:
+def _free(claims: CertifiedClaims, u: Fraction, v: Fraction) -> _SampleBox | None:
     """The box around a point, or one next to it that is shorter to write; None when it is not in a
     cell.
     """
@@ -223,7 +222,7 @@ def _free(claims: CertifiedClaims, u: Fraction, v: Fraction) -> SampleBox | None
     if (cell := claims.cell_at(u, v)) is None:
         return None
     half = claims.room(u, v, Fraction(steps, FIRST_BOX_PARTS), Fraction(steps, MIN_WINDOW_PARTS))
-    return SampleBox(u, v, half, cell)
+    return _SampleBox(u, v, half, cell)
 
 
 def check_point(
@@ -258,31 +257,20 @@ def check_point(
     return there
 
 
-def _constant_over(claims: CertifiedClaims, box: SampleBox, there: CountedPoint) -> Fraction | None:
-    """Half the width of the box over which the counts were proved; None when none was small enough."""
+def _constant_over(claims: CertifiedClaims, box: _SampleBox, there: CountedPoint) -> Fraction:
+    """Half the width of the box over which the cell's counts are proved; 0 when none was small
+    enough.
+    """
     half = box.half
-    for _ in range(ATTEMPTS):
-        if half == 0:
-            return None
+    for _ in range(ATTEMPTS if half else 0):
         try:
-            _prove(claims, box, half, there)
-        except Unproved:
+            u, v = ((at - half, at + half) for at in (box.u, box.v))
+            true = claims.counting.over(u, v, there)
+        except Unproved:  # the box is too large, or the counts change in it
             half /= 4
             continue
+        assert not differs(claims.result.cells[box.cell], true), (
+            "the box holds its middle, whose counts are the cell's"
+        )
         return half
-    return None
-
-
-def _prove(claims: CertifiedClaims, box: SampleBox, half: Fraction, there: CountedPoint) -> None:
-    """Prove the cell's counts for every point of the box.
-
-    Raises
-    ------
-    Unproved
-        When the box is too large, or the counts change in it.
-    """
-    u, v = (box.u - half, box.u + half), (box.v - half, box.v + half)
-    true = claims.counting.over(u, v, there)
-    assert not differs(claims.result.cells[box.cell], true), (
-        "the box holds its middle, whose counts are the cell's"
-    )
+    return Fraction(0)
