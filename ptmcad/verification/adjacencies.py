@@ -190,17 +190,16 @@ def _check_non_adjacency(claims: Claims, number: int, a: NonAdjacency) -> None:
     what = f"non-adjacency {number}"
     stacks = result.stacks[a.critical_value : a.critical_value + 2]
     heights, edges = [], 0
-    for segment, k, height in zip((a.below, a.above), (0, -1), claims.height, strict=True):
+    for segment, k, edge in zip((a.below, a.above), (0, -1), claims.height, strict=True):
         n, m = a.left[k], a.right[k]
         if segment is not None:
             _check_free(claims, what, segment, n, m)
-            height = from_fraction(segment[2])
         elif [n, m] != [stack.cells[k] for stack in stacks]:
             raise Violation(
                 f"{what}: a segment is missing, and the cells do not reach the window's edge"
             )
         edges += segment is None
-        heights.append(height)
+        heights.append(edge if segment is None else from_fraction(segment[2]))
     branches = len(a.left) + len(a.right) - 2
     if a.reason is Reason.PAIR:
         holds = branches == 2 and not edges

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import replace
-from fractions import Fraction
 from itertools import pairwise
 from typing import Any
 
@@ -16,6 +15,7 @@ from ptmcad.question.counts import Count
 from ptmcad.question.slice import Slice
 from ptmcad.text.numerals import approximate_text, fraction_of, shortest_text
 from ptmcad.verification.certified.coverclaims import CertifiedClaims
+from ptmcad.verification.intervalclaims import enclosed_end
 from ptmcad.verification.normalform.boxes import Unproved
 from ptmcad.verification.report import Unchecked, Violation
 from ptmcad.verification.solutions import map_of
@@ -70,9 +70,6 @@ def check_enclosed(found: Mapping[str, Any], slice: Slice) -> str:
     return told
 
 
-_Part = tuple[Fraction, Fraction]
-
-
 def _check_cover(found: Mapping[str, Any], slice: Slice) -> None:
     """Enclosed intervals are in order and end where changes or the window do; no part of the window
     is in neither.
@@ -82,10 +79,10 @@ def _check_cover(found: Mapping[str, Any], slice: Slice) -> None:
     Violation
     """
     axis = next(axis for axis in slice.axes if axis.name == found["along"]["name"])
-    changes = [_enclosed_end(change["at"]) for change in found["changes"]]
+    changes = [enclosed_end(change["at"]) for change in found["changes"]]
     known = {*changes, (axis.low, axis.low), (axis.high, axis.high)}
     intervals = [
-        (_enclosed_end(entry["low"]), _enclosed_end(entry["high"])) for entry in found["intervals"]
+        (enclosed_end(entry["low"]), enclosed_end(entry["high"])) for entry in found["intervals"]
     ]
     for low, high in intervals:
         if low not in known or high not in known:
@@ -104,10 +101,3 @@ def _check_cover(found: Mapping[str, Any], slice: Slice) -> None:
         raise Violation(
             f"nothing is said of {axis.name} next to {approximate_text(reach)}, which is in the window"
         )
-
-
-def _enclosed_end(data: Mapping[str, Any]) -> _Part:
-    low, high = fraction_of(data["low"]), fraction_of(data["high"])
-    if low > high:
-        raise Violation(f"an end is said to be from {data['low']} to {data['high']}")
-    return low, high

@@ -121,16 +121,25 @@ def _end(line: ParameterLine, data: Mapping[str, Any]) -> End:
     return number
 
 
+def enclosed_end(data: Mapping[str, Any]) -> tuple[Fraction, Fraction]:
+    """The numbers between which an end is said to be.
+
+    Raises
+    ------
+    Violation
+    """
+    low, high = fraction_of(data["low"]), fraction_of(data["high"])
+    if low > high:
+        raise Violation(f"an end is said to be from {data['low']} to {data['high']}")
+    return low, high
+
+
 def _root(data: Mapping[str, Any]) -> tuple[AlgebraicNumber, fmpz_poly]:
     """The only root of an irreducible polynomial between two numbers, and the polynomial."""
     polynomial = fmpz_poly(
         [integer_of(c.removeprefix("-")) * (-1 if c[:1] == "-" else 1) for c in data["polynomial"]]
     )
-    number = AlgebraicNumber(
-        tuple(map(int, polynomial)), fraction_of(data["low"]), fraction_of(data["high"])
-    )
-    if number.low > number.high:
-        raise Violation(f"an end is said to be from {data['low']} to {data['high']}")
+    number = AlgebraicNumber(tuple(map(int, polynomial)), *enclosed_end(data))
     if sum(multiplicity for _, multiplicity in polynomial.factor()[1]) != 1:
         raise Violation(f"the polynomial of an end near {float(number):.10g} is not irreducible")
     if roots_within(polynomial, from_fraction(number.low), from_fraction(number.high)) != 1:

@@ -7,7 +7,7 @@ listed as such.
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterator, Sequence
 from contextvars import ContextVar
 from dataclasses import dataclass
 from decimal import Decimal
@@ -189,39 +189,41 @@ def _differences(
     rightly: Collection[str] | None,
 ) -> Iterator[str]:
     """In what a document differs; `Unchecked` where that is no contradiction."""
-    differs = f"{place} is {found!r:.80}, not {stored!r:.80}"
-    parts: Iterable[tuple[Any, Any, Any, str]] = ()
+    differs = f"{place.lstrip('.')} is {found!r:.80}, not {stored!r:.80}"
     ends, true = _ends(stored), _ends(finer) or (_ends(found) if earlier else None)
+    parts, others, fine = _parts(stored), _parts(found), _parts(finer)
     if ends and true:
         (low, high), (least, most) = ends, true
         is_rounded = _is_decimal_of(stored.get("decimal"), true)
         if not (low <= least and most <= high and is_rounded):
-            differs = f"{place} is in {least!s:.30} to {most!s:.30}, not {stored!r:.80}"
+            differs = f"{place.lstrip('.')} is in {least!s:.30} to {most!s:.30}, not {stored!r:.80}"
             yield Unchecked(differs) if low <= most and least <= high and is_rounded else differs
-    elif isinstance(stored, dict) and isinstance(found, dict):
-        # what an earlier version did not write of a part is no difference
-        keys = stored.keys() if place and earlier and rightly is None else found.keys()
-        for key in sorted((stored.keys() | keys) - {"versions"}):
-            where = f"{place}.{key}".lstrip(".")
-            if earlier and key in (rightly or ()):
-                if stored.get(key) != found.get(key):
-                    yield Unchecked(
-                        f"{where} is {found.get(key)!r:.80}, not {stored.get(key)!r:.80}"
-                    )
-            elif key not in found or key not in stored:
-                yield f"{where} is {'not there' if key in stored else 'missing'}"
-            else:
-                part = finer.get(key) if isinstance(finer, dict) else None
-                parts = (*parts, (stored[key], found[key], part, where))
-    elif isinstance(stored, list) and isinstance(found, list) and len(stored) == len(found):
-        fine = finer if isinstance(finer, list) and len(finer) == len(found) else [None] * len(found)
-        places = (f"{place}[{k}]" for k in range(len(found)))
-        parts = zip(stored, found, fine, places, strict=True)
+    elif earlier and place.rpartition(".")[2] in (rightly or ()):
+        if stored != found:
+            yield Unchecked(differs)
+    elif (
+        type(stored) is type(found)
+        and (parts or others)
+        and (isinstance(stored, dict) or len(parts) == len(others))
+    ):
+        for key in dict.fromkeys([*parts, *others]):
+            where = f"{place}{key}"
+            if key in parts and key in others:
+                pair = parts[key], others[key], fine.get(key), where
+                yield from _differences(*pair, earlier=earlier, rightly=rightly)
+            # what an earlier version did not write of a part is no difference
+            elif key in parts or not (place and earlier and rightly is None):
+                yield f"{where.lstrip('.')} is {'not there' if key in parts else 'missing'}"
     elif (type(stored), stored) != (type(found), found):
         is_open = earlier and {type(stored), type(found)} == {bool, type(None)}
         yield Unchecked(differs) if is_open else differs
-    for part in parts:
-        yield from _differences(*part, earlier=earlier, rightly=rightly)
+
+
+def _parts(entry: Any) -> dict[str, Any]:
+    """What is in a mapping or a list, by its place there; nothing in anything else."""
+    if isinstance(entry, dict):
+        return {f".{key}": part for key, part in entry.items() if key != "versions"}
+    return {f"[{k}]": part for k, part in enumerate(entry if isinstance(entry, list) else ())}
 
 
 def _ends(entry: Any) -> tuple[Fraction, Fraction] | None:
@@ -244,6 +246,13 @@ def _is_decimal_of(text: str | None, ends: tuple[Fraction, Fraction]) -> bool:
     return all(abs(fraction_of(text) - end) <= unit for end in ends)
 
 
+PROVENANCE = Check(
+    "provenance",
+    "",
+    None,
+    "name, title, reference, versions, precision, timings: no claims about the regions",
+)
+"""What no check is of."""
 PARTS = 100
 """Of each check, for a bar that shows how far a verification is."""
 

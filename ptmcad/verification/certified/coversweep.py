@@ -59,7 +59,9 @@ class CoverSweep:
     touching: frozenset[tuple[int, int]]
 
     def locate(self, u: Fraction, v: Fraction) -> int | None:
-        """The component of a point of the open window; None where it is in the cover."""
+        """The component of a point; None where it is in the cover, or not in the open window."""
+        if min(u, v) <= 0 or max(u, v) >= self.steps:
+            return None
         found = {
             self.component_of[item.node] if item.free else None
             for item in self._items((u, v), (u, v))

@@ -15,7 +15,7 @@ from ptmcad.errors import ExpressionError
 from ptmcad.model import Kind
 from ptmcad.question.slice import Slice
 from ptmcad.text.expressions import Expression, axis
-from ptmcad.text.flint_numbers import from_fraction
+from ptmcad.text.flint_numbers import interval_of
 from ptmcad.verification.claims import Claims
 from ptmcad.verification.coordinates import evaluated, monomials
 from ptmcad.verification.derivation import derivation_of
@@ -37,8 +37,8 @@ def check_domain(claims: Claims) -> str:
     What was proved, and of which parameters it was not.
     """
     slice = claims.result.slice
-    across, up = ((from_fraction(a.low), from_fraction(a.high)) for a in slice.axes)
-    window, unchecked, asked = (across, up), [], _expressions(slice)
+    window = (interval_of(slice.axes[0]), interval_of(slice.axes[1]))
+    unchecked, asked = [], _expressions(slice)
     for what, expression, strict in (*_of_parameters(slice, asked), *_of_polynomials(claims)):
         pole = sign = Sign.UNCHECKED
         if expression is not None:

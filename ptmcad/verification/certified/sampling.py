@@ -86,17 +86,13 @@ def check_boxes(
     far = min(len(by_area), number - near)
     proved = points = missing = 0
     area = Fraction(0)
-    tried = [(box, k < far) for k, box in enumerate(by_area)] + [
-        (p, k < near) for k, p in enumerate(beside)
-    ]
-    for k, (box, with_box) in enumerate(tried):
-        report(k, len(tried))
+    for k, box in enumerate([*by_area, *beside]):
+        report(k, len(by_area) + len(beside))
         if not points and missing == HOPELESS:
             return Unchecked(f"none of the first {missing} points could be decided; seed {seed}")
         there = check_point(claims, box.cell, box.u, box.v)
-        if there is not None:
-            points += 1
-        if not with_box:
+        points += there is not None
+        if not (k < far or 0 <= k - len(by_area) < near):
             missing += there is None
             continue
         half = Fraction(0) if there is None else _constant_over(claims, box, there)
@@ -105,9 +101,8 @@ def check_boxes(
             area += (2 * half / claims.sweep.steps) ** 2
             continue
         # where constancy is not proved, a change of the count would show in a corner
-        for side1 in (-1, 1):
-            for side2 in (-1, 1):
-                check_point(claims, box.cell, box.u + side1 * box.half, box.v + side2 * box.half)
+        for one, two in product((-1, 1), repeat=2):
+            check_point(claims, box.cell, box.u + one * box.half, box.v + two * box.half)
         missing += 1
     text = f"{proved} boxes, {100 * float(area):.2g} % of the window, {points} points; seed {seed}"
     if missing:

@@ -158,7 +158,10 @@ def wave(a: float, b: float, top: float) -> Any:
 @compiled
 def reach(a: float, b: float, c: float, d: float) -> Any:
     """The least and the largest length of a vector in [a, b] x [c, d]."""
-    low, high = hypot(_nearest(a, b), _nearest(c, d)), hypot(max(abs(a), abs(b)), max(abs(c), abs(d)))
+    low, high = (
+        hypot(_nearest(a, b), _nearest(c, d)),
+        hypot(max(abs(a), abs(b)), max(abs(c), abs(d))),
+    )
     # the C library's hypot is wrong by one unit in the last place at most
     return low * (1 - 2.0**-50), high * (1 + 2.0**-50) + _MIN_ERROR
 

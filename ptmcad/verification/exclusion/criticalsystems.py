@@ -8,7 +8,7 @@ is the projection of a solution of one of the systems, in the box of its start (
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from fractions import Fraction
 from itertools import combinations
 from math import inf, pi
@@ -25,6 +25,7 @@ from ptmcad.verification.normalform.modelequations import Equations, Pair
 from ptmcad.verification.normalform.operations import Formulas
 from ptmcad.verification.normalform.unknownbounds import half_widths
 from ptmcad.verification.normalform.waves import Waves, form_of, sides
+from ptmcad.verification.planecurves import PLANE, polynomial
 
 SHORT_SHARE = 16
 """A spring is short, for total counts, if its length is less than this part of the sum of its
@@ -78,25 +79,16 @@ def halves_over(lattice: SliceLattice, u: Range, v: Range) -> Floats:
 def window_equations(lattice: SliceLattice) -> Equations:
     """The formulas of a map's equations, over the window in lattice steps and its unknowns."""
     f, slice = Formulas(), lattice.slice
-    axes = [
-        f.add(
-            f.number(a.low),
-            f.multiply(f.variable(k), f.number((a.high - a.low) / lattice.steps)),
+    axes = {
+        name: f.add(f.number(axis.low), f.multiply(f.variable(k), f.number(side)))
+        for k, (name, axis, side) in enumerate(
+            zip(PLANE.names(), slice.axes, lattice.square, strict=True)
         )
-        for k, a in enumerate(slice.axes)
-    ]
-
-    def polynomial(terms: Iterable[tuple[int, int, Fraction]]) -> int:
-        return f.sum(
-            f.multiply(f.number(c), f.multiply(f.power(axes[0], i), f.power(axes[1], j)))
-            for i, j, c in terms
-        )
-
-    parameters = {n: f.number(0) for n in slice.model.free_lengths}
-    parameters |= {
-        n: f.divide(polynomial(e.numerator), polynomial(e.denominator))
-        for n, e in slice.parameters.items()
     }
+    parameters = {n: f.number(0) for n in slice.model.free_lengths}
+    for n, e in slice.parameters.items():
+        parts = (f.polynomial(polynomial(terms), axes) for terms in (e.numerator, e.denominator))
+        parameters[n] = f.divide(*parts)
     return Equations(form_of(slice), f, parameters, slice.model.positive)
 
 

@@ -67,9 +67,7 @@ class SolutionPlaces:
         smallest = max(MIN_WIDTH, PER_SHARE * float(share))
         rectangle = [(enclosing(low)[0], enclosing(high)[1]) for low, high in (u, v)]
         pieces = no_pieces(self._lattice.steps)
-        return [
-            Isolation(system, halves, rectangle, smallest, pieces) for system in self._systems
-        ]
+        return [Isolation(system, halves, rectangle, smallest, pieces) for system in self._systems]
 
 
 @dataclass(frozen=True)
