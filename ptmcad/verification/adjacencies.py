@@ -151,8 +151,8 @@ def _marks(claims: Claims, s: int) -> list[tuple[fmpq, int, int, bool]]:
     levels on both sides, and whether it is an edge.
     """
     result = claims.result
-    ends = (0, 0), tuple(len(stack.walls) for stack in result.stacks[s : s + 2])
-    marks = [(v, *levels, True) for v, levels in zip(claims.height, ends, strict=True)]
+    left, right = (len(stack.walls) for stack in result.stacks[s : s + 2])
+    marks = [(claims.height[0], 0, 0, True), (claims.height[1], left, right, True)]
     for a in result.adjacencies:
         first, second = result.cells[a.first], result.cells[a.second]
         if a.segment is not None and first.stack == s:

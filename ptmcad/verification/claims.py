@@ -27,10 +27,16 @@ from ptmcad.verification.derivation import (
 )
 from ptmcad.verification.fibrealgebra import SolutionAlgebra, fibre_over
 from ptmcad.verification.kinds import SignMeaning, kind_of, meaning_of
-from ptmcad.verification.planecurves import Interval, Terms
+from ptmcad.verification.planecurves import Terms
 from ptmcad.verification.quotientalgebra import NotFinite
 from ptmcad.verification.report import Violation
-from ptmcad.verification.rootcounts import ends_of, numbered_root, roots_between, roots_within
+from ptmcad.verification.rootcounts import (
+    Interval,
+    ends_of,
+    numbered_root,
+    roots_between,
+    roots_within,
+)
 
 
 @dataclass(frozen=True)

@@ -21,6 +21,7 @@ from ptmcad.model import Kind, Mechanism, Model, System
 from ptmcad.text.flint_numbers import from_fraction
 from ptmcad.verification.constraints import (
     CrossedBars,
+    Polynomials,
     along_loops,
     crossed_conditions,
     leave_one_way,
@@ -127,25 +128,25 @@ class Derivation:
     meaning: SignMeaning
     energy: fmpq_mpoly | None
     moments: Mapping[str, fmpq_mpoly]
-    equations: tuple[fmpq_mpoly, ...]
-    inequalities: tuple[fmpq_mpoly, ...] = ()
-    stability: tuple[fmpq_mpoly, ...] = ()
+    equations: Polynomials
+    inequalities: Polynomials = ()
+    stability: Polynomials = ()
     from_energy: bool = False
     moved: bool = False
     apart: bool = False
     springs: tuple[SpringVector, ...] = ()
-    closing: tuple[fmpq_mpoly, ...] = ()
+    closing: Polynomials = ()
     required: tuple[Required, ...] = ()
 
     @cached_property
-    def jacobian(self) -> tuple[tuple[fmpq_mpoly, ...], ...]:
+    def jacobian(self) -> tuple[Polynomials, ...]:
         """The equations' derivatives by the unknowns; where solutions are critical points a
         Hessian.
         """
         return tuple(self.ring.gradient(e, self.unknowns) for e in self.equations)
 
     @property
-    def hessian(self) -> tuple[tuple[fmpq_mpoly, ...], ...]:
+    def hessian(self) -> tuple[Polynomials, ...]:
         """The same where it is one; else no rows."""
         return self.jacobian[: self.meaning.order]
 

@@ -28,7 +28,7 @@ from ptmcad.text.numerals import shortest_text
 from ptmcad.text.parsing import parse
 from ptmcad.text.syntax import names_in
 from ptmcad.verification.derivation import parameters_of
-from ptmcad.verification.parameterclaims import explained
+from ptmcad.verification.parameterclaims import explained, named_in
 from ptmcad.verification.parameterlines import NotKnown, ParameterLine, SliceLines, check_maxima
 from ptmcad.verification.report import (
     Check,
@@ -36,6 +36,7 @@ from ptmcad.verification.report import (
     Unchecked,
     VerifyReport,
     Violation,
+    Within,
     checked,
     drawn,
 )
@@ -81,12 +82,18 @@ class _DesignLines:
     def _parameters(self, known: dict[str, Expression]) -> dict[str, Expression]:
         """The model's parameters, by what the document and the model say of them."""
         model = self.found.model
-        texts = {name: of.default for name, of in model.parameters.items()} | self.found.parameters
-        texts = {name: text for name, text in texts.items() if text and name not in known}
-        values = known | explained(texts, known)
-        for name in parameters_of(model):
-            if name not in values:
+        said = {name: parameter.default for name, parameter in model.parameters.items()}
+        said |= {name: text for name, text in self.found.parameters.items() if text}
+        texts, waiting = dict[str, str](), [*parameters_of(model)]
+        while waiting:
+            name = waiting.pop()
+            if name in known or name in texts:
+                continue
+            if not said.get(name):
                 raise Violation(f"nothing says what {name[:40]!r} is")
+            texts[name] = said[name]
+            waiting += named_in(name, said[name])
+        values = known | explained(texts, known)
         return {name: values[name] for name in parameters_of(model)}
 
     def excesses(self, design: Mapping[str, Expression]) -> list[Expression]:
@@ -271,7 +278,7 @@ def _fails_all_over(lines: _DesignLines, part: Ranges) -> bool:
     return any(is_in_domain(e, window, strict=True) is Sign.PROVED for e in lines.excesses(axes))
 
 
-def _check_values(lines: _DesignLines, within: Callable[[int, int], None]) -> str:
+def _check_values(lines: _DesignLines, within: Within) -> str:
     found = lines.found
     if found.along is None:
         return Unchecked("they are of another aim than a range")

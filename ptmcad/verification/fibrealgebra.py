@@ -35,6 +35,8 @@ from ptmcad.verification.principalminors import (
 )
 from ptmcad.verification.quotientalgebra import Monomial, NotFinite, algebra
 
+Matrices = Sequence[fmpq_mat]
+
 
 @dataclass(frozen=True)
 class SolutionAlgebra:
@@ -172,7 +174,7 @@ class SolutionAlgebra:
                 number, positive = left, [*positive, inside]
         return number, positive
 
-    def signs(self, positive: Sequence[fmpq_mat]) -> str:
+    def signs(self, positive: Matrices) -> str:
         """Of the only real solution at which functions are positive: those of the Hessian's
         eigenvalues, positive ones first, or of the conditions for stability.
         """
@@ -183,7 +185,7 @@ class SolutionAlgebra:
             "0+-"[self._sum_of_signs(positive, self.matrix(p))] for p in self.point.stability
         )
 
-    def is_degenerate(self, positive: Sequence[fmpq_mat]) -> bool:
+    def is_degenerate(self, positive: Matrices) -> bool:
         """Whether the only real solution at which functions are positive is a degenerate one."""
         return self.norm() == 0 and not self._sum_of_signs(positive, self.jacobian * self.jacobian)
 
@@ -200,11 +202,11 @@ class SolutionAlgebra:
         """The sum of the signs of the Jacobian's determinant over all real solutions."""
         return self._sum_of_signs((), self.jacobian)
 
-    def _number(self, positive: Sequence[fmpq_mat]) -> int:
+    def _number(self, positive: Matrices) -> int:
         """The number of real solutions at which all of some functions are positive."""
         return self._sum_of_signs(positive, _identity(self.dimension))
 
-    def _sum_of_signs(self, positive: Sequence[fmpq_mat], weight: fmpq_mat) -> int:
+    def _sum_of_signs(self, positive: Matrices, weight: fmpq_mat) -> int:
         """The sum of the weight's signs over the real solutions at which all of some functions are
         positive.
 
@@ -217,7 +219,7 @@ class SolutionAlgebra:
             total += plus - minus
         return total >> len(positive)
 
-    def _index(self, required: Sequence[fmpq_mat]) -> tuple[int, ...]:
+    def _index(self, required: Matrices) -> tuple[int, ...]:
         """Numbers of the critical points that count by the number of negative eigenvalues, where
         none is zero; nothing of other solutions."""
         if not self.point.hessian:
@@ -303,7 +305,7 @@ def _saturated(point: Derivation) -> list[fmpq_mpoly]:
     return [*(ring.taken(p, point.ring) for p in point.generators()), product - 1]
 
 
-def _product(start: fmpq_mat, factors: Sequence[fmpq_mat], exponents: Sequence[int]) -> fmpq_mat:
+def _product(start: fmpq_mat, factors: Matrices, exponents: Sequence[int]) -> fmpq_mat:
     """A matrix times powers of others."""
     for factor, e in zip(factors, exponents, strict=True):
         for _ in range(int(e)):
@@ -315,7 +317,7 @@ def _identity(n: int) -> fmpq_mat:
     return fmpq_mat(n, n, [fmpq(int(i == j)) for i in range(n) for j in range(n)])
 
 
-def _traces_of_products(first: Sequence[fmpq_mat], second: Sequence[fmpq_mat]) -> fmpq_mat:
+def _traces_of_products(first: Matrices, second: Matrices) -> fmpq_mat:
     """The traces of f g for all f of the first and g of the second matrices.
 
     A trace is the sum of the products of the entries of f and of the transposed g, so all of them

@@ -22,11 +22,14 @@ from ptmcad.verification.parameterlines import LineGap, ParameterLine
 from ptmcad.verification.report import Violation
 from ptmcad.verification.rootcounts import roots_within
 
+Entry = Mapping[str, Any]
+"""A part of a document, as JSON has it."""
+
 
 def check_intervals(
     line: ParameterLine,
     gaps: Sequence[LineGap],
-    entries: Sequence[Mapping[str, Any]],
+    entries: Sequence[Entry],
     working: int | None,
 ) -> None:
     """The intervals are the longest ones of equal counts between changes: all of them, or those with
@@ -73,9 +76,7 @@ def check_intervals(
             raise Violation(f"the sample {entry['sample']} is not in its interval")
 
 
-def check_changes(
-    line: ParameterLine, gaps: Sequence[LineGap], changes: Sequence[Mapping[str, Any]]
-) -> None:
+def check_changes(line: ParameterLine, gaps: Sequence[LineGap], changes: Sequence[Entry]) -> None:
     """Counts on the sides of changes are right, and a change is listed where they differ.
 
     Raises
@@ -109,7 +110,7 @@ def _written_counts(gap: LineGap) -> list[int] | dict[str, int | None]:
     return {"total": there.total, "stable": there.stable}
 
 
-def _end(line: ParameterLine, data: Mapping[str, Any]) -> End:
+def _end(line: ParameterLine, data: Entry) -> End:
     """An end of an interval, if counts can change there."""
     if "window" in data:
         if (edge := fraction_of(data["window"])) not in (line.low, line.high):
@@ -121,7 +122,7 @@ def _end(line: ParameterLine, data: Mapping[str, Any]) -> End:
     return number
 
 
-def enclosed_end(data: Mapping[str, Any]) -> tuple[Fraction, Fraction]:
+def enclosed_end(data: Entry) -> tuple[Fraction, Fraction]:
     """The numbers between which an end is said to be.
 
     Raises
@@ -134,7 +135,7 @@ def enclosed_end(data: Mapping[str, Any]) -> tuple[Fraction, Fraction]:
     return low, high
 
 
-def _root(data: Mapping[str, Any]) -> tuple[AlgebraicNumber, fmpz_poly]:
+def _root(data: Entry) -> tuple[AlgebraicNumber, fmpz_poly]:
     """The only root of an irreducible polynomial between two numbers, and the polynomial."""
     polynomial = fmpz_poly(
         [integer_of(c.removeprefix("-")) * (-1 if c[:1] == "-" else 1) for c in data["polynomial"]]

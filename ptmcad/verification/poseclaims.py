@@ -127,8 +127,8 @@ def _check_with_free_lengths(claims: CertifiedClaims, cell: Cell, found: Poses) 
             untold[str(reason)] = None
     try:
         if found.status is Status.UNDECIDED:
-            if (reason := why_not_listed(claims, cell)) is not None:
-                raise reason
+            if (doubt := why_not_listed(claims, cell)) is not None:
+                raise doubt
             more = f"whether there are more than the {len(cell.solutions)} listed"
             return Unchecked("; ".join((more if untold else f"{more}, which hold", *untold)))
         if len(found.model.unknowns) > len(BUDGETS):

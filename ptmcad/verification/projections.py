@@ -34,9 +34,10 @@ from ptmcad.answer.regionmap import CriticalValue
 from ptmcad.text.flint_numbers import from_fraction, interval_of
 from ptmcad.text.numerals import text_of
 from ptmcad.verification.claims import Claims, PlaneCurve, ball, is_root, polynomial, short, side
-from ptmcad.verification.planecurves import Interval, discriminant, norm, resultant
+from ptmcad.verification.planecurves import discriminant, resultant
 from ptmcad.verification.report import Violation
 from ptmcad.verification.rootcounts import (
+    Interval,
     ball_chain,
     ends_of,
     isolated,
@@ -87,8 +88,10 @@ def points_over(curve: PlaneCurve, value: CriticalValue) -> fmpz_poly:
         q = fmpz_poly([-value.low.numerator, value.low.denominator])
     k = gcd(curve.exponent_gcd(0), int(q.deflation()[1]))
     m = curve.exponent_gcd(1)
-    q = fmpz_poly([q[k * i] for i in range(int(q.degree()) // k + 1)])
-    return squarefree(norm(curve.deflated(k, m), q).inflate(m))
+    # eliminated is the second variable, so u and v change places
+    constant = tuple((0, i // k, int(a)) for i, a in enumerate(q.coeffs()) if a)
+    swapped = tuple((j, i, c) for i, j, c in curve.deflated(k, m))
+    return squarefree(resultant(swapped, constant).inflate(m))
 
 
 def _factors(p: fmpz_poly) -> tuple[fmpz_poly, ...]:

@@ -22,6 +22,8 @@ from ptmcad.options import Progress
 from ptmcad.text.numerals import fraction_of
 
 C = TypeVar("C")
+Within = Callable[[int, int], None]
+"""Called with the numbers of parts of a check that are done, and of all."""
 
 COLUMNS = 80
 WIDTH = 22

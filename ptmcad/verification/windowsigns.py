@@ -23,10 +23,15 @@ from ptmcad.answer.regionmap import HARMLESS, NO_POINT, CriticalValue, Kind
 from ptmcad.text.expressions import Expression
 from ptmcad.text.flint_numbers import to_fraction
 from ptmcad.verification.claims import Claims, PlaneCurve, short
-from ptmcad.verification.planecurves import Interval, factored, polynomial
+from ptmcad.verification.planecurves import factored, polynomial
 from ptmcad.verification.projections import Heights, projection_of_one
 from ptmcad.verification.report import Violation
-from ptmcad.verification.rootcounts import isolating_intervals, roots_between, separated_points
+from ptmcad.verification.rootcounts import (
+    Interval,
+    isolating_intervals,
+    roots_between,
+    separated_points,
+)
 
 HALVINGS = 4
 """Times that the window's sides are halved before a curve may be used although it has no point in

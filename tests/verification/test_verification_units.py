@@ -20,7 +20,7 @@ from ptmcad.algebra import resultants
 from ptmcad.answer.regionmap import RegionMap, Status
 from ptmcad.errors import LimitReached
 from ptmcad.verification.claims import Claims
-from ptmcad.verification.planecurves import Terms, discriminant, norm, resultant
+from ptmcad.verification.planecurves import Terms, discriminant, resultant
 from ptmcad.verification.report import check_anew
 from ptmcad.verification.solutions import check_counts, check_solutions
 
@@ -50,14 +50,6 @@ def test_resultants_agree_with_interpolation(p: Terms, q: Terms) -> None:
 def test_discriminants_agree_with_interpolation(p: Terms) -> None:
     expected = resultants.discriminant(in_v(p))
     assert discriminant(p) in (expected, -expected)
-
-
-@given(polynomials, st.lists(st.integers(-9, 9), min_size=2, max_size=6).filter(lambda q: q[-1]))
-def test_norms_are_resultants_in_the_other_variable(p: Terms, q: list[int]) -> None:
-    expected = resultant(
-        tuple((j, i, c) for i, j, c in p), tuple((0, i, c) for i, c in enumerate(q) if c)
-    )
-    assert norm(p, fmpz_poly(q)) in (expected, -expected)
 
 
 # --------------------------------------------------------------------------------------------------- partial results

@@ -7,7 +7,7 @@ which `ptmcad.verification.certified.sampling` tries points.
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from fractions import Fraction
 
 from ptmcad.answer.regionmap import Cell
@@ -16,7 +16,7 @@ from ptmcad.verification.certified.coverclaims import CertifiedClaims
 from ptmcad.verification.kinds import kind_of, numbers_for
 from ptmcad.verification.normalform.boxes import Unproved, Zero, in_words
 from ptmcad.verification.normalform.waves import form_of
-from ptmcad.verification.report import Unchecked, Violation
+from ptmcad.verification.report import Unchecked, Violation, Within
 
 HOPELESS = 16
 """Samples or random points whose counts were not decided, after which no more are tried."""
@@ -44,7 +44,7 @@ class _InBoxes(Unproved):
 
 def check_points(
     claims: CertifiedClaims,
-    report: Callable[[int, int], None] = lambda _done, _total: None,
+    report: Within = lambda *_: None,
 ) -> str:
     """Counts and stored solutions of every cell; and for how many cells nothing was proved.
 

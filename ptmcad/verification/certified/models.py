@@ -43,6 +43,8 @@ from ptmcad.verification.solutions import not_positive
 if TYPE_CHECKING:
     from ptmcad.verification.exclusion.places import Isolation, SolutionPlaces
 
+Values = Mapping[str, arb]
+"""Of the parameters."""
 PRECISIONS = ((53, MIN_HALF_WIDTH), (128, 2.0**-80))
 """Bits, and the share of all configurations below which boxes are not halved: a spring may be as
 short as that.
@@ -119,7 +121,7 @@ class ModelCounting:
 
     def _found(
         self,
-        values: Mapping[str, arb],
+        values: Values,
         starts: Sequence[Isolation],
         smallest: float,
         there: CountedPoint | None = None,
@@ -141,7 +143,7 @@ class ModelCounting:
             ]
         return found
 
-    def _counts(self, values: Mapping[str, arb], found: Sequence[Zero]) -> CellCounts:
+    def _counts(self, values: Values, found: Sequence[Zero]) -> CellCounts:
         """The counts, with the number of stable solutions with margins where these are asked for.
 
         Raises
@@ -203,7 +205,7 @@ class ModelCounting:
         """
         return self._has_margins(_balls(self._values(x, y)), zero)
 
-    def _has_margins(self, values: Mapping[str, arb], zero: Zero) -> bool:
+    def _has_margins(self, values: Values, zero: Zero) -> bool:
         field = BallEquations(self.form, values, ("margins",))
         return _are_positive(field(zero.within).conditions, kind_of(self._count).undecided)
 
@@ -251,9 +253,7 @@ def _ahead(field: BallEquations, box: Sequence[arb]) -> Sequence[arb]:
     return field(box).conditions[: len(field.sides)]
 
 
-def _field(
-    form: Form, values: Mapping[str, arb], count: Count | None, side: Sides
-) -> BallEquations:
+def _field(form: Form, values: Values, count: Count | None, side: Sides) -> BallEquations:
     """The equations with what is positive at the solutions that are counted, and at no others, if a
     count is given.
     """

@@ -18,7 +18,7 @@ from __future__ import annotations
 
 import random
 from bisect import bisect_right
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from fractions import Fraction
 from itertools import accumulate, product
 from math import ceil, isqrt
@@ -29,7 +29,7 @@ from ptmcad.verification.certified.cellsamples import HOPELESS
 from ptmcad.verification.certified.counted import CountedPoint, differs, stored
 from ptmcad.verification.certified.coverclaims import CertifiedClaims
 from ptmcad.verification.normalform.boxes import Unproved
-from ptmcad.verification.report import Unchecked, Violation
+from ptmcad.verification.report import Unchecked, Violation, Within
 
 FIRST_BOX_PARTS = 512
 """The first box tried has at most this part of the window's width on each side of its middle."""
@@ -65,7 +65,7 @@ def check_boxes(
     claims: CertifiedClaims,
     seed: str,
     number: int,
-    report: Callable[[int, int], None] = lambda _done, _total: None,
+    report: Within = lambda *_: None,
 ) -> str:
     """Try so many random boxes, and more points; what was found, and for how many points nothing
     was proved.
