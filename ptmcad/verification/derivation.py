@@ -13,7 +13,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property, lru_cache
-from typing import NamedTuple, TypeVar
+from typing import Any, NamedTuple, TypeVar
 
 from flint import fmpq, fmpq_mpoly
 
@@ -56,6 +56,18 @@ def coordinates_of(model: Model) -> tuple[str, ...]:
         tuple(f"{function}_{angle}" for angle in model.angles for function in ("cos", "sin"))
         + model.reals
     )
+
+
+def not_positive(model: Model, values: Mapping[str, Any]) -> str | None:
+    """A parameter, a number or a ball, that is not surely in its domain, such as a length or a
+    stiffness that is not positive; None where all are.
+    """
+    for name, value in values.items():
+        if (name in model.positive and not value > 0) or (
+            name in model.nonnegative and not value >= 0
+        ):
+            return name
+    return None
 
 
 class SpringVector(NamedTuple):

@@ -22,7 +22,6 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from fractions import Fraction
 from itertools import combinations
-from typing import Any
 
 from flint import arb, ctx, fmpq_mat
 
@@ -36,7 +35,7 @@ from ptmcad.verification.certified.ballequations import Matrix
 from ptmcad.verification.certified.narrow import narrowed, precisions, tested
 from ptmcad.verification.claims import Claims
 from ptmcad.verification.coordinates import ball_at
-from ptmcad.verification.derivation import Derivation
+from ptmcad.verification.derivation import Derivation, not_positive
 from ptmcad.verification.fibrealgebra import SolutionAlgebra
 from ptmcad.verification.kinds import kind_of
 from ptmcad.verification.principalminors import inertia
@@ -254,18 +253,6 @@ def _text(counts: Counts) -> str:
     if counts.index is not None:
         parts.append(f"index {counts.index}")
     return ", ".join(parts)
-
-
-def not_positive(model: Model, values: Mapping[str, Any]) -> str | None:
-    """A parameter, a number or a ball, that is not surely in its domain, such as a length or a
-    stiffness that is not positive; None where all are.
-    """
-    for name, value in values.items():
-        if (name in model.positive and not value > 0) or (
-            name in model.nonnegative and not value >= 0
-        ):
-            return name
-    return None
 
 
 def map_of(slice: Slice, cells: tuple[Cell, ...], status: Status = Status.EXACT) -> RegionMap:

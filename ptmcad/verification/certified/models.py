@@ -25,6 +25,7 @@ from ptmcad.verification.certified.counted import CellCounts, CountedPoint
 from ptmcad.verification.certified.krawczyk import Spent, zeros
 from ptmcad.verification.certified.narrow import is_wide, precisions, tested
 from ptmcad.verification.coordinates import evaluated
+from ptmcad.verification.derivation import not_positive
 from ptmcad.verification.kinds import kind_of
 from ptmcad.verification.normalform.boxes import (
     MIN_HALF_WIDTH,
@@ -38,7 +39,6 @@ from ptmcad.verification.normalform.lattice import Range, SliceLattice
 from ptmcad.verification.normalform.waves import Form, Sides, form_of, sides
 from ptmcad.verification.principalminors import inertia
 from ptmcad.verification.report import Violation
-from ptmcad.verification.solutions import not_positive
 
 if TYPE_CHECKING:
     from ptmcad.verification.exclusion.places import Isolation, SolutionPlaces
