@@ -131,6 +131,11 @@ def is_result(path: Path) -> bool:
     return _format_of(text) is not None or not _is_record(text)
 
 
+def is_record(path: Path) -> bool:
+    """Whether a file is a problem record."""
+    return _is_record(read_text(path, MAX_BYTES, f"a {FORMAT} file"))
+
+
 def _other_kind(text: str) -> str:
     """What the text is if it is a file of ptmcad of another kind, as a message; empty if it is
     none.

@@ -26,7 +26,7 @@ from ptmcad.cli.commonoptions import report_idle, result_argument
 from ptmcad.cli.familyfiles import read_family_file
 from ptmcad.cli.limits import ResourceLimits, held, limit_options
 from ptmcad.cli.progress import ProgressBar
-from ptmcad.cli.storedresults import MAX_BYTES, kind_of, read_other, read_result
+from ptmcad.cli.storedresults import MAX_BYTES, is_record, kind_of, read_other, read_result
 from ptmcad.errors import ConfigError, LimitReached
 from ptmcad.options import Options, Progress
 from ptmcad.question.config import member_like
@@ -38,6 +38,10 @@ if TYPE_CHECKING:
     from ptmcad.verification.report import VerifyReport
 
 Verify = Callable[[Progress], "VerifyReport"]
+_READ = (
+    "this is no result that can be verified: those are the JSON files of `ptmcad classify`, `solve`, `range` and "
+    "`design`, also of a family, and the folder of a sweep"
+)
 _MORE_DIGITS = 10
 """With so many digits more, enclosures of a line are far narrower than those that are stored."""
 
@@ -176,7 +180,18 @@ def _reports(path: Path, how: Mapping[str, Any]) -> Iterator[tuple[str, Verify]]
             partial(_verified_family, family, seed),
         )
     else:
-        yield "", of_map(read_result(path, whole=False))
+        yield "", of_map(_map_in(path, kind))
+
+
+def _map_in(path: Path, kind: str) -> RegionMap:
+    """The map in a file that is no other document; of JSON that is none, it is said what is read."""
+    try:
+        return read_result(path, whole=False)
+    except ConfigError as error:
+        is_document = path.suffix.lower() == ".json" and not kind.startswith("region-map")
+        if is_document and not is_record(path):
+            raise ConfigError(_READ, file=str(path)) from error
+        raise
 
 
 def _meet(one: Bounds | None, other: Bounds | None) -> bool:

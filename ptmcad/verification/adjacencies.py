@@ -92,7 +92,7 @@ def _check_segment(claims: Claims, number: int, a: Adjacency) -> None:
         raise Violation(
             f"adjacency {number}: cells {a.first} and {a.second} are not in neighbouring stacks"
         )
-    _check_free(claims, f"adjacency {number}", a.segment, (a.first, first), (a.second, second))
+    _check_free(claims, f"adjacency {number}", a.segment, a.first, a.second)
     value = result.critical_values[_stack(first)]
     line = next((c.number for c in claims.lines if is_root(c.in_v[0], value)), None)
     if line != a.component:
@@ -101,15 +101,12 @@ def _check_segment(claims: Claims, number: int, a: Adjacency) -> None:
         )
 
 
-def _check_free(
-    claims: Claims, what: str, segment: Segment, first: tuple[int, Cell], second: tuple[int, Cell]
-) -> None:
+def _check_free(claims: Claims, what: str, segment: Segment, first: int, second: int) -> None:
     """A segment joins two cells of neighbouring stacks and meets no curve."""
+    cells = claims.result.cells
     low, high, v = (from_fraction(q) for q in segment)
-    if not (
-        inside_stack(claims, low, _stack(first[1]))
-        and inside_stack(claims, high, _stack(second[1]))
-    ):
+    ends = ((first, low), (second, high))
+    if not all(inside_stack(claims, u, _stack(cells[n])) for n, u in ends):
         raise Violation(
             f"{what}: the segment from {short(low)} to {short(high)} does not join the cells' stacks"
         )
@@ -120,8 +117,8 @@ def _check_free(
         raise Violation(
             f"{what}: component {hit.number} meets the segment [{low}, {high}] at height {v}"
         )
-    for (n, cell), u in ((first, low), (second, high)):
-        if (level := claims.level(u, v)) != cell.level:
+    for n, u in ends:
+        if (level := claims.level(u, v)) != cells[n].level:
             raise Violation(
                 f"{what}: the segment's end ({u}, {v}) has {level} roots below it, so it is not in cell {n}"
             )
@@ -134,32 +131,10 @@ and an edge, two edges. See the module's text."""
 
 def check_no_adjacency_missing(claims: Claims) -> str:
     """Every open segment of the line over a critical value joins a stored pair."""
-    result = claims.result
     by_parity = by_points = 0
-    for s in range(len(result.stacks) - 1):
-        left, right = result.stacks[s], result.stacks[s + 1]
-        stored = sorted(
-            (
-                a
-                for a in result.adjacencies
-                if a.segment is not None and result.cells[a.first].stack == s
-            ),
-            key=lambda a: (result.cells[a.first].level, result.cells[a.second].level),
-        )
-        pairs = {(result.cells[a.first].level, result.cells[a.second].level) for a in stored}
-        marks = [(claims.height[0], 0, 0, True)]
-        for a in stored:
-            assert a.segment is not None
-            marks.append(
-                (
-                    from_fraction(a.segment[2]),
-                    result.cells[a.first].level,
-                    result.cells[a.second].level,
-                    False,
-                )
-            )
-        marks.append((claims.height[1], len(left.walls), len(right.walls), True))
-        marks.sort(key=lambda m: fmpq(m[0]))
+    for s in range(len(claims.result.stacks) - 1):
+        marks = _marks(claims, s)
+        pairs = {(left, right) for _, left, right, is_edge in marks if not is_edge}
         for (bottom, l0, r0, edge0), (top, l1, r1, edge1) in pairwise(marks):
             # half-branches that settle the part, by the number of its ends that are the window's
             # edges
@@ -171,6 +146,20 @@ def check_no_adjacency_missing(claims: Claims) -> str:
     return f"{by_parity} gaps by parity of half-branches, {by_points} by all points of the curves over the critical value"
 
 
+def _marks(claims: Claims, s: int) -> list[tuple[fmpq, int, int, bool]]:
+    """The stored segments over a critical value from below, between the window's edges: heights,
+    levels on both sides, and whether it is an edge.
+    """
+    result = claims.result
+    left, right = (len(stack.walls) for stack in result.stacks[s : s + 2])
+    marks = [(claims.height[0], 0, 0, True), (claims.height[1], left, right, True)]
+    for a in result.adjacencies:
+        first, second = result.cells[a.first], result.cells[a.second]
+        if a.segment is not None and first.stack == s:
+            marks.append((from_fraction(a.segment[2]), first.level, second.level, False))
+    return sorted(marks, key=lambda mark: fmpq(mark[0]))
+
+
 def check_non_adjacencies(claims: Claims) -> str:
     """Every pair of cells that order would allow to be adjacent, and that is not, has a record that
     proves it.
@@ -179,12 +168,7 @@ def check_non_adjacencies(claims: Claims) -> str:
     expected = set()
     for s in range(len(result.stacks) - 1):
         left, right = result.stacks[s].cells, result.stacks[s + 1].cells
-        chain = sorted(
-            (result.cells[a.first].level, result.cells[a.second].level)
-            for a in result.adjacencies
-            if a.segment is not None and result.cells[a.first].stack == s
-        )
-        for (l0, r0), (l1, r1) in pairwise([(0, 0), *chain, (len(left) - 1, len(right) - 1)]):
+        for (_, l0, r0, _), (_, l1, r1, _) in pairwise(_marks(claims, s)):
             if (l0, r0) != (l1, r1):
                 expected.add((s, left[l0 : l1 + 1], right[r0 : r1 + 1]))
     stored = [(a.critical_value, a.left, a.right) for a in result.non_adjacencies]
@@ -204,37 +188,27 @@ def check_non_adjacencies(claims: Claims) -> str:
 def _check_non_adjacency(claims: Claims, number: int, a: NonAdjacency) -> None:
     result = claims.result
     what = f"non-adjacency {number}"
-    for segment, n, m in ((a.below, a.left[0], a.right[0]), (a.above, a.left[-1], a.right[-1])):
+    stacks = result.stacks[a.critical_value : a.critical_value + 2]
+    heights, edges = [], 0
+    for segment, k, edge in zip((a.below, a.above), (0, -1), claims.height, strict=True):
+        n, m = a.left[k], a.right[k]
         if segment is not None:
-            _check_free(claims, what, segment, (n, result.cells[n]), (m, result.cells[m]))
-    at_edges = [
-        height
-        for height, segment in zip(claims.height, (a.below, a.above), strict=True)
-        if segment is None
-    ]
-    starts_at_edge = (a.left[0], a.right[0]) == (
-        result.stacks[a.critical_value].cells[0],
-        result.stacks[a.critical_value + 1].cells[0],
-    )
-    ends_at_edge = (a.left[-1], a.right[-1]) == (
-        result.stacks[a.critical_value].cells[-1],
-        result.stacks[a.critical_value + 1].cells[-1],
-    )
-    if (a.below is None and not starts_at_edge) or (a.above is None and not ends_at_edge):
-        raise Violation(
-            f"{what}: a segment is missing, and the cells do not reach the window's edge"
-        )
+            _check_free(claims, what, segment, n, m)
+        elif [n, m] != [stack.cells[k] for stack in stacks]:
+            raise Violation(
+                f"{what}: a segment is missing, and the cells do not reach the window's edge"
+            )
+        edges += segment is None
+        heights.append(edge if segment is None else from_fraction(segment[2]))
     branches = len(a.left) + len(a.right) - 2
     if a.reason is Reason.PAIR:
-        holds = branches == 2 and not at_edges
+        holds = branches == 2 and not edges
     elif a.reason is Reason.EDGE:
-        holds = branches == 1 and len(at_edges) == 1
+        holds = branches == 1 and edges == 1
     else:
-        low = claims.height[0] if a.below is None else from_fraction(a.below[2])
-        high = claims.height[1] if a.above is None else from_fraction(a.above[2])
-        heights = Heights(claims.curves, result.critical_values[a.critical_value])
+        points = Heights(claims.curves, result.critical_values[a.critical_value])
         # at the window's edge the branches may only run into its corner over the critical value
-        holds = len(at_edges) < 2 and heights.between(low, high) <= 1 - len(at_edges)
+        holds = edges < 2 and points.between(*heights) <= 1 - edges
     if not holds:
         raise Violation(
             f"{what}: {branches} half-branches between cells {a.left} and {a.right} are not closed because "

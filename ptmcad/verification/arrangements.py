@@ -26,7 +26,7 @@ from collections import defaultdict
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from fractions import Fraction
-from itertools import count
+from itertools import count, pairwise
 
 from flint import fmpz_poly
 
@@ -109,7 +109,8 @@ def _checked(found: Changes, fits: Fits, source: random.Random) -> str:
 
     values = [change.value for change in found.changes]
     _check_numbers([*values, *found.others])
-    gaps = _gaps(found)
+    parts = _parts(found)
+    gaps = _gaps(found, [high - low for low, high in parts])
     for part, listed in enumerate(found.between):
         expect(listed, part, "listed between changes")
     for k, value in enumerate(values):
@@ -120,9 +121,12 @@ def _checked(found: Changes, fits: Fits, source: random.Random) -> str:
         if correspondence(found.arrangements[k], found.arrangements[k + 1]) is not None:
             _check_instant(fits, value, k, name)
     skipped = 0
-    for part, ends in enumerate(_parts(found)):
+    for part, (start, end) in enumerate(parts):
         for _ in range(RANDOM):
-            low, high = (ends[0] + (ends[1] - ends[0]) * n for n in _place(source))
+            share = source.randrange(1, _DIGITS)
+            low, high = (
+                start + (end - start) * Fraction(2 * share + k, 2 * _DIGITS) for k in (0, 1)
+            )
             member = low if low == high else simplest_fraction(low, high)
             try:
                 expect(member, part, "between changes")
@@ -149,24 +153,22 @@ def _check_numbers(numbers: Sequence[AlgebraicNumber | Enclosure]) -> None:
                 )
 
 
-def _gaps(found: Changes) -> list[Fraction]:
+def _gaps(found: Changes, rooms: Sequence[Fraction]) -> list[Fraction]:
     """How far from each change members are looked at: less where another change or an end of the
     range is near.
+
+    Parameters
+    ----------
+    rooms : the widths of the intervals between changes.
     """
-    free = found.free
-    ends = [
-        free.low,
-        *(end for change in found.changes for end in (change.value.low, change.value.high)),
-        free.high,
-    ]
-    rooms = [high - low for low, high in zip(ends[::2], ends[1::2], strict=True)]
-    sides = [(rooms[k], rooms[k + 1]) for k in range(len(found.changes))]
+    sides = list(pairwise(rooms))
     # enclosures have members at their ends, and neighbouring ones may have one in common
     if min(rooms) < 0 or any(
         change.is_exact and min(s) == 0 for change, s in zip(found.changes, sides, strict=True)
     ):
         raise Violation("the changes are not in increasing order within the range")
-    return [min(NEAR * (free.high - free.low), below / 3, above / 3) for below, above in sides]
+    near = NEAR * (found.free.high - found.free.low)
+    return [min(near, below / 3, above / 3) for below, above in sides]
 
 
 def _beside(value: AlgebraicNumber | Enclosure, gap: Fraction) -> tuple[Fraction, Fraction]:
@@ -179,12 +181,6 @@ def _beside(value: AlgebraicNumber | Enclosure, gap: Fraction) -> tuple[Fraction
         )
         return simplest_fraction(*places[0]), simplest_fraction(*places[1])
     return value.low, value.high
-
-
-def _place(source: random.Random) -> tuple[Fraction, Fraction]:
-    """Two shares of an interval, near together and at random."""
-    first = source.randrange(1, _DIGITS)
-    return Fraction(first, _DIGITS), Fraction(first, _DIGITS) + Fraction(1, 2 * _DIGITS)
 
 
 def _check_instant(fits: Fits, value: AlgebraicNumber | Enclosure, part: int, name: str) -> None:
@@ -212,19 +208,16 @@ def _parts(found: Changes) -> list[tuple[Fraction, Fraction]]:
 
 
 def _is_seen(listed: Arrangement, result: RegionMap, base: int) -> bool:
-    """Whether a map over one of the axes has an arrangement, as far as it shows.
+    """Whether a map over one of the axes has an arrangement, as far as it shows: of the sides the
+    order along those above and below.
 
     Parameters
     ----------
     base : 0 when the map's first axis is the family's, 1 when its axes are exchanged.
     """
-    return correspondence(_shown(listed, base), _arrangement(result, base)) is not None
-
-
-def _shown(listed: Arrangement, base: int) -> Arrangement:
-    """What a map over one axis shows: the order along the sides above and below."""
     low_x, high_x, low_y, high_y = listed.sides
-    return replace(listed, sides=((), (), low_y, high_y) if base == 0 else (low_x, high_x, (), ()))
+    sides = ((), (), low_y, high_y) if base == 0 else (low_x, high_x, (), ())
+    return correspondence(replace(listed, sides=sides), _arrangement(result, base)) is not None
 
 
 def _arrangement(result: RegionMap, base: int) -> Arrangement:

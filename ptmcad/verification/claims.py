@@ -17,7 +17,7 @@ from flint import arb, ctx, fmpq, fmpz_poly
 from ptmcad.answer.regionmap import CriticalValue, RegionMap
 from ptmcad.errors import PoleError
 from ptmcad.model import Model
-from ptmcad.text.flint_numbers import from_fraction, to_fraction
+from ptmcad.text.flint_numbers import interval_of, to_fraction
 from ptmcad.text.numerals import approximate_text, text_of
 from ptmcad.text.plane import PlanePolynomial
 from ptmcad.verification.derivation import (
@@ -27,9 +27,16 @@ from ptmcad.verification.derivation import (
 )
 from ptmcad.verification.fibrealgebra import SolutionAlgebra, fibre_over
 from ptmcad.verification.kinds import SignMeaning, kind_of, meaning_of
+from ptmcad.verification.planecurves import Terms
 from ptmcad.verification.quotientalgebra import NotFinite
 from ptmcad.verification.report import Violation
-from ptmcad.verification.rootcounts import ends_of, numbered_root, roots_between, roots_within
+from ptmcad.verification.rootcounts import (
+    Interval,
+    ends_of,
+    numbered_root,
+    roots_between,
+    roots_within,
+)
 
 
 @dataclass(frozen=True)
@@ -37,7 +44,7 @@ class PlaneCurve:
     """A component as a polynomial in u and v."""
 
     number: int
-    terms: tuple[tuple[int, int, int], ...]
+    terms: Terms
 
     @classmethod
     def of(cls, number: int, p: PlanePolynomial, base: int) -> PlaneCurve:
@@ -79,7 +86,7 @@ class PlaneCurve:
         """The largest k such that only powers of the variable's k-th power occur."""
         return max(1, gcd(*(t[variable] for t in self.terms)))
 
-    def deflated(self, k: int, m: int) -> tuple[tuple[int, int, int], ...]:
+    def deflated(self, k: int, m: int) -> Terms:
         """The terms with u for u^k and v for v^m."""
         return tuple((i // k, j // m, c) for i, j, c in self.terms)
 
@@ -117,14 +124,12 @@ class Claims:
         return kind_of(self.result.slice.count).with_margins(derivation_of(self.model))
 
     @cached_property
-    def base(self) -> tuple[fmpq, fmpq]:
-        axis = self.result.slice.axes[self.result.base]
-        return from_fraction(axis.low), from_fraction(axis.high)
+    def base(self) -> Interval:
+        return interval_of(self.result.slice.axes[self.result.base])
 
     @cached_property
-    def height(self) -> tuple[fmpq, fmpq]:
-        axis = self.result.slice.axes[1 - self.result.base]
-        return from_fraction(axis.low), from_fraction(axis.high)
+    def height(self) -> Interval:
+        return interval_of(self.result.slice.axes[1 - self.result.base])
 
     def _used(self) -> list[PlaneCurve]:
         return [
@@ -196,7 +201,7 @@ def side(u: fmpq, value: CriticalValue) -> int:
     """The sign of u minus the critical value, by a change of sign, or a count of roots where there
     is none.
     """
-    low, high = from_fraction(value.low), from_fraction(value.high)
+    low, high = interval_of(value)
     if u < low or u > high:
         return -1 if u < low else 1
     p = polynomial(value)
@@ -219,15 +224,12 @@ def is_root(f: fmpz_poly, value: CriticalValue) -> bool:
     common = f.gcd(whole)
     if common.degree() == whole.degree():
         return True
-    return (
-        common.degree() > 0
-        and roots_within(common, from_fraction(value.low), from_fraction(value.high)) > 0
-    )
+    return common.degree() > 0 and roots_within(common, *interval_of(value)) > 0
 
 
-def bracket(value: CriticalValue, width: fmpq) -> tuple[fmpq, fmpq]:
+def bracket(value: CriticalValue, width: fmpq) -> Interval:
     """A narrow bracket of a critical value, within the stored one."""
-    low, high = from_fraction(value.low), from_fraction(value.high)
+    low, high = interval_of(value)
     p, bits = polynomial(value), 64
     for end in (low, high):
         if p(end) == 0:

@@ -15,20 +15,18 @@ from dataclasses import dataclass, field
 from fractions import Fraction
 from functools import cached_property
 from math import prod
-from operator import add, mul, sub, truediv
 from typing import Any, Generic, TypeVar
 
 from flint import Ordering, arb, fmpq, fmpq_mpoly, fmpq_mpoly_ctx
 
 from ptmcad.text.balls import ball_of
 from ptmcad.text.flint_numbers import from_fraction, to_fraction
-from ptmcad.text.tree import Call, Chain, Name, Negative, Number, Power, Tree
+from ptmcad.text.tree import OPERATORS, Call, Chain, Name, Negative, Number, Power, Tree, names_of
 
 _SHOWN = 400
 Circle = tuple[fmpq_mpoly, fmpq_mpoly]
 """Cosine and sine of an angle."""
 R = TypeVar("R", bound=Any)
-_OPERATORS = {"+": add, "-": sub, "*": mul, "/": truediv}
 
 
 def circle_names(angle: str) -> tuple[str, str]:
@@ -66,7 +64,7 @@ class TreeValues(Generic[R]):
             case Chain(first, steps):
                 total = self.value(first)
                 for step in steps:
-                    total = _OPERATORS[step.operator](total, self.value(step.operand))
+                    total = OPERATORS[step.operator](total, self.value(step.operand))
                 return total
             case Power(base, exponent):
                 power: R = self.value(base) ** _whole(exponent)
@@ -173,6 +171,8 @@ class CoordinateRing(TreeValues[fmpq_mpoly]):
         return self.elements[name]
 
     def circle_of(self, angle: str) -> Circle:
+        if angle not in self.circles:
+            raise NotImplementedError("the checker knows no angle that is a cosine or sine")
         return self.circles[angle]
 
 
@@ -180,50 +180,26 @@ def multiples(tree: Tree) -> dict[str, Fraction]:
     """The angles of a sum, each with its factor; what is no multiple of an angle has the empty
     name.
     """
-    match tree:
-        case Number(number):
-            return {"": number}
-        case Name(name):
-            return {name: Fraction(1)}
-        case Negative(operand):
-            return {name: -multiple for name, multiple in multiples(operand).items()}
-        case Chain(first, steps):
-            total = multiples(first)
-            for step in steps:
-                total = _joined(total, step.operator, multiples(step.operand))
-            return total
-        case Power(base, exponent):
-            return {"": _number(multiples(base)) ** _whole(exponent)}
-        case Call():
-            raise NotImplementedError("the checker knows no angle that is a cosine or sine")
-
-
-def _joined(
-    left: dict[str, Fraction], operator: str, right: dict[str, Fraction]
-) -> dict[str, Fraction]:
-    if operator in "+-":
-        sign = 1 if operator == "+" else -1
-        return left | {
-            name: left.get(name, Fraction(0)) + sign * multiple for name, multiple in right.items()
-        }
-    if operator == "*" and left.keys() == {""}:
-        left, right = right, left
-    factor = _number(right) if operator == "*" else 1 / _number(right)
-    return {name: multiple * factor for name, multiple in left.items()}
-
-
-def _number(multiples: dict[str, Fraction]) -> Fraction:
-    if multiples.keys() != {""}:
+    names = names_of(tree)
+    try:
+        p = CoordinateRing((*names, ""), ()).value(tree)
+    except ValueError as error:
+        raise NotImplementedError("the checker divides by no angle") from error
+    found = [(to_fraction(c), factors) for c, factors in monomials(p, names)]
+    if any(sum(power for _, power in factors) > 1 for _, factors in found):
         raise NotImplementedError("the checker knows no products of angles")
-    return multiples[""]
+    return {factors[0][0] if factors else "": c for c, factors in found}
 
 
 def _whole(exponent: Tree) -> int:
     """A whole exponent: a root would be another function, with values that are not compared."""
-    number = _number(multiples(exponent))
-    if number.denominator != 1:
-        raise NotImplementedError(f"the checker knows whole exponents only, not {number}")
-    return int(number)
+    match exponent:
+        case Number(number) if number.denominator == 1:
+            return int(number)
+    found = multiples(exponent)
+    if found.keys() - {""} or found.get("", Fraction(0)).denominator != 1:
+        raise NotImplementedError("the checker knows whole exponents only")
+    return int(found.get("", 0))
 
 
 _ZERO, _ONE = arb(0), arb(1)

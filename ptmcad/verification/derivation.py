@@ -13,7 +13,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property, lru_cache
-from typing import NamedTuple, TypeVar
+from typing import Any, NamedTuple, TypeVar
 
 from flint import fmpq, fmpq_mpoly
 
@@ -21,6 +21,7 @@ from ptmcad.model import Kind, Mechanism, Model, System
 from ptmcad.text.flint_numbers import from_fraction
 from ptmcad.verification.constraints import (
     CrossedBars,
+    Polynomials,
     along_loops,
     crossed_conditions,
     leave_one_way,
@@ -55,6 +56,18 @@ def coordinates_of(model: Model) -> tuple[str, ...]:
         tuple(f"{function}_{angle}" for angle in model.angles for function in ("cos", "sin"))
         + model.reals
     )
+
+
+def not_positive(model: Model, values: Mapping[str, Any]) -> str | None:
+    """A parameter, a number or a ball, that is not surely in its domain, such as a length or a
+    stiffness that is not positive; None where all are.
+    """
+    for name, value in values.items():
+        if (name in model.positive and not value > 0) or (
+            name in model.nonnegative and not value >= 0
+        ):
+            return name
+    return None
 
 
 class SpringVector(NamedTuple):
@@ -127,25 +140,25 @@ class Derivation:
     meaning: SignMeaning
     energy: fmpq_mpoly | None
     moments: Mapping[str, fmpq_mpoly]
-    equations: tuple[fmpq_mpoly, ...]
-    inequalities: tuple[fmpq_mpoly, ...] = ()
-    stability: tuple[fmpq_mpoly, ...] = ()
+    equations: Polynomials
+    inequalities: Polynomials = ()
+    stability: Polynomials = ()
     from_energy: bool = False
     moved: bool = False
     apart: bool = False
     springs: tuple[SpringVector, ...] = ()
-    closing: tuple[fmpq_mpoly, ...] = ()
+    closing: Polynomials = ()
     required: tuple[Required, ...] = ()
 
     @cached_property
-    def jacobian(self) -> tuple[tuple[fmpq_mpoly, ...], ...]:
+    def jacobian(self) -> tuple[Polynomials, ...]:
         """The equations' derivatives by the unknowns; where solutions are critical points a
         Hessian.
         """
         return tuple(self.ring.gradient(e, self.unknowns) for e in self.equations)
 
     @property
-    def hessian(self) -> tuple[tuple[fmpq_mpoly, ...], ...]:
+    def hessian(self) -> tuple[Polynomials, ...]:
         """The same where it is one; else no rows."""
         return self.jacobian[: self.meaning.order]
 

@@ -28,6 +28,7 @@ from ptmcad.text.numerals import shortest_text
 from ptmcad.text.parsing import parse
 from ptmcad.text.syntax import names_in
 from ptmcad.verification.derivation import parameters_of
+from ptmcad.verification.parameterclaims import explained, named_in
 from ptmcad.verification.parameterlines import NotKnown, ParameterLine, SliceLines, check_maxima
 from ptmcad.verification.report import (
     Check,
@@ -35,6 +36,7 @@ from ptmcad.verification.report import (
     Unchecked,
     VerifyReport,
     Violation,
+    Within,
     checked,
     drawn,
 )
@@ -45,6 +47,7 @@ DESIGNS = 12
 _HALVINGS = 16
 """Of a part of the bounds that no box holds, until a condition is seen to fail all over it."""
 _SHARES = 2**20
+Ranges = tuple[tuple[Fraction, Fraction], ...]
 _NOTHING = Enclosure(Fraction(0), Fraction(0))
 
 
@@ -78,26 +81,20 @@ class _DesignLines:
 
     def _parameters(self, known: dict[str, Expression]) -> dict[str, Expression]:
         """The model's parameters, by what the document and the model say of them."""
-        model, texts = self.found.model, self.found.parameters
-
-        def value_of(name: str, chain: tuple[str, ...] = ()) -> Expression:
-            if name not in known:
-                text = texts.get(name) or (
-                    model.parameters[name].default if name in model.parameters else ""
-                )
-                if not text or name in chain:
-                    raise Violation(f"nothing says what {name[:40]!r} is")
-                try:
-                    known[name] = parse(
-                        text, {n: value_of(n, (*chain, name)) for n in names_in(text)}
-                    )
-                except ExpressionError as error:
-                    raise Violation(
-                        f"the text kept for {name[:40]!r} is no expression: {error}"
-                    ) from error
-            return known[name]
-
-        return {name: value_of(name) for name in parameters_of(model)}
+        model = self.found.model
+        said = {name: parameter.default for name, parameter in model.parameters.items()}
+        said |= {name: text for name, text in self.found.parameters.items() if text}
+        texts, waiting = dict[str, str](), [*parameters_of(model)]
+        while waiting:
+            name = waiting.pop()
+            if name in known or name in texts:
+                continue
+            if not said.get(name):
+                raise Violation(f"nothing says what {name[:40]!r} is")
+            texts[name] = said[name]
+            waiting += named_in(name, said[name])
+        values = known | explained(texts, known)
+        return {name: values[name] for name in parameters_of(model)}
 
     def excesses(self, design: Mapping[str, Expression]) -> list[Expression]:
         """What is not positive where the conditions are satisfied, as they are written.
@@ -193,18 +190,17 @@ def _check_form(lines: _DesignLines) -> str:
             raise Violation("a design has not as many numbers as there are parameters")
         design = lines.named(point.at)
         where = f"the design {_named(design)}"
-        if not all(
-            axis.low <= at <= axis.high for axis, at in zip(found.over, point.at, strict=True)
-        ):
+        if not _is_in(_bounds(found), point.at):
             raise Violation(f"{where} is not within the bounds")
         if design == found.best and point.value != found.value:
             raise Violation("the best design is listed with another value")
         if point.value is None:
             continue
-        bounds = [found.bound, *(box.bound for box in found.boxes if _is_in(box, point.at))]
+        bounds = [box.bound for box in found.boxes if _is_in(box.ranges, point.at)]
+        bounds += [] if found.bound is None else [found.bound]
         if best is None or point.value.low > best:
             raise Violation(f"{where} is listed with more than the best one has")
-        if any(bound is not None and point.value.low > bound for bound in bounds):
+        if any(point.value.low > bound for bound in bounds):
             raise Violation(f"{where} is listed with more than the bound")
     return f"{len(found.points)} designs, {len(found.boxes)} boxes"
 
@@ -218,41 +214,31 @@ def _check_boxes(lines: _DesignLines) -> str:
         if not all(axis.low <= low < high <= axis.high for axis, (low, high) in inside):
             raise Violation(f"{_text(box)} is not within the bounds")
     for a, b in combinations(found.boxes, 2):
-        if all(max(p[0], q[0]) < min(p[1], q[1]) for p, q in zip(a.ranges, b.ranges, strict=True)):
+        if _overlap(a.ranges, b.ranges):
             raise Violation(f"{_text(a)} and {_text(b)} overlap")
     open_ = 0
-    waiting = [(tuple((axis.low, axis.high) for axis in found.over), found.boxes, 0)]
+    whole = _bounds(found)
+    waiting = [(whole, found.boxes, 0)]
     while waiting:
         part, boxes, halvings = waiting.pop()
-        met = tuple(
-            box
-            for box in boxes
-            if all(
-                low < b and a < high for (a, b), (low, high) in zip(part, box.ranges, strict=True)
-            )
-        )
-        cuts = [
+        met = tuple(box for box in boxes if _overlap(part, box.ranges))
+        cuts = (
             (k, cut)
             for box in met
             for k, ends in enumerate(box.ranges)
             for cut in ends
             if part[k][0] < cut < part[k][1]
-        ]
-        if met and not cuts:
-            continue
-        if not met:
-            if _fails_all_over(lines, part):
+        )
+        k, cut = next(cuts, (-1, Fraction(0)))
+        if k < 0:
+            if met or _fails_all_over(lines, part):
                 continue
             if halvings == _HALVINGS:
                 open_ += 1
                 continue
-            shares = [
-                (high - low) / (axis.high - axis.low)
-                for axis, (low, high) in zip(found.over, part, strict=True)
-            ]
+            shares = [(b - a) / (d - c) for (a, b), (c, d) in zip(part, whole, strict=True)]
             k = shares.index(max(shares))
-            cuts, halvings = [(k, sum(part[k], Fraction(0)) / 2)], halvings + 1
-        k, cut = cuts[0]
+            cut, halvings = sum(part[k], Fraction(0)) / 2, halvings + 1
         for ends in ((part[k][0], cut), (cut, part[k][1])):
             waiting.append(((*part[:k], ends, *part[k + 1 :]), met, halvings))
     if open_:
@@ -264,7 +250,16 @@ def _check_boxes(lines: _DesignLines) -> str:
     )
 
 
-def _fails_all_over(lines: _DesignLines, part: Sequence[tuple[Fraction, Fraction]]) -> bool:
+def _bounds(found: BestDesign) -> Ranges:
+    return tuple((axis.low, axis.high) for axis in found.over)
+
+
+def _overlap(one: Ranges, other: Ranges) -> bool:
+    """Whether two boxes have inner points in common."""
+    return all(max(a, c) < min(b, d) for (a, b), (c, d) in zip(one, other, strict=True))
+
+
+def _fails_all_over(lines: _DesignLines, part: Ranges) -> bool:
     """Whether one condition is seen to fail in all of a part of the bounds that no box holds.
 
     Raises
@@ -283,7 +278,7 @@ def _fails_all_over(lines: _DesignLines, part: Sequence[tuple[Fraction, Fraction
     return any(is_in_domain(e, window, strict=True) is Sign.PROVED for e in lines.excesses(axes))
 
 
-def _check_values(lines: _DesignLines, within: Callable[[int, int], None]) -> str:
+def _check_values(lines: _DesignLines, within: Within) -> str:
     found = lines.found
     if found.along is None:
         return Unchecked("they are of another aim than a range")
@@ -333,7 +328,7 @@ def _check_bound(lines: _DesignLines) -> str:
     if found.value is not None and found.bound < found.value.low:
         raise Violation("the best design has more than the bound")
     source = random.Random(f"{seed} lines")
-    everywhere = BoundedBox(tuple((axis.low, axis.high) for axis in found.over), found.bound)
+    everywhere = BoundedBox(_bounds(found), found.bound)
     boxes = [
         *found.boxes,
         *source.choices(found.boxes or [everywhere], k=max(0, DESIGNS - len(found.boxes))),
@@ -406,8 +401,8 @@ def _meet(one: Enclosure, other: Enclosure) -> bool:
     return one.low <= other.high and other.low <= one.high
 
 
-def _is_in(box: BoundedBox, at: tuple[Fraction, ...]) -> bool:
-    return all(low <= x <= high for x, (low, high) in zip(at, box.ranges, strict=True))
+def _is_in(ranges: Ranges, at: tuple[Fraction, ...]) -> bool:
+    return all(low <= x <= high for x, (low, high) in zip(at, ranges, strict=True))
 
 
 def _text(box: BoundedBox) -> str:

@@ -6,25 +6,25 @@ changes the intervals cover the window. That nothing changes between these point
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import replace
-from fractions import Fraction
 from itertools import pairwise
-from typing import Any
 
 from ptmcad.question.counts import Count
 from ptmcad.question.slice import Slice
 from ptmcad.text.numerals import approximate_text, fraction_of, shortest_text
+from ptmcad.verification.certified.counted import numbers_in
 from ptmcad.verification.certified.coverclaims import CertifiedClaims
+from ptmcad.verification.intervalclaims import Entry, enclosed_end
 from ptmcad.verification.normalform.boxes import Unproved
 from ptmcad.verification.report import Unchecked, Violation
 from ptmcad.verification.solutions import map_of
 
+_COUNTS = ("total", "stable", "index")
 _NEAR = 2**7
 """Both ends are looked at from inside, such a share of the interval away."""
 
 
-def check_enclosed(found: Mapping[str, Any], slice: Slice) -> str:
+def check_enclosed(found: Entry, slice: Slice) -> str:
     """Counts at the sample and next to both ends of each interval.
 
     Raises
@@ -51,29 +51,23 @@ def check_enclosed(found: Mapping[str, Any], slice: Slice) -> str:
             except Unproved:
                 unknown += 1
                 continue
-            said = (entry["total"], entry["stable"], entry["index"] and tuple(entry["index"]))
-            pairs = [
-                (a, b)
-                for a, b in zip(said, (there.total, there.stable, there.index), strict=True)
-                if a is not None
-            ]
+            said = {name: entry[name] for name in _COUNTS if entry[name] is not None}
+            true = numbers_in(there)
             # what is not known here, as stable solutions of loops are not, contradicts nothing
-            is_known = bool(pairs) and all(b is not None for _, b in pairs)
+            is_known = bool(said) and said.keys() <= true.keys()
             number, unknown = number + is_known, unknown + (not is_known)
-            if any(b not in (None, a) for a, b in pairs):
-                raise Violation(
-                    f"(total, stable, index) {said} are said to be at {shortest_text(at)}; there are {there}"
-                )
+            for name in said.keys() & true.keys():
+                if said[name] != (list(index) if isinstance(index := true[name], tuple) else index):
+                    raise Violation(
+                        f"{said} are said to be at {shortest_text(at)}; there are {there}"
+                    )
     told = f"{number} points"
     if unknown or not number:
         return Unchecked(f"{told}; {unknown} were not decided")
     return told
 
 
-_Part = tuple[Fraction, Fraction]
-
-
-def _check_cover(found: Mapping[str, Any], slice: Slice) -> None:
+def _check_cover(found: Entry, slice: Slice) -> None:
     """Enclosed intervals are in order and end where changes or the window do; no part of the window
     is in neither.
 
@@ -82,10 +76,10 @@ def _check_cover(found: Mapping[str, Any], slice: Slice) -> None:
     Violation
     """
     axis = next(axis for axis in slice.axes if axis.name == found["along"]["name"])
-    changes = [_enclosed_end(change["at"]) for change in found["changes"]]
+    changes = [enclosed_end(change["at"]) for change in found["changes"]]
     known = {*changes, (axis.low, axis.low), (axis.high, axis.high)}
     intervals = [
-        (_enclosed_end(entry["low"]), _enclosed_end(entry["high"])) for entry in found["intervals"]
+        (enclosed_end(entry["low"]), enclosed_end(entry["high"])) for entry in found["intervals"]
     ]
     for low, high in intervals:
         if low not in known or high not in known:
@@ -104,10 +98,3 @@ def _check_cover(found: Mapping[str, Any], slice: Slice) -> None:
         raise Violation(
             f"nothing is said of {axis.name} next to {approximate_text(reach)}, which is in the window"
         )
-
-
-def _enclosed_end(data: Mapping[str, Any]) -> _Part:
-    low, high = fraction_of(data["low"]), fraction_of(data["high"])
-    if low > high:
-        raise Violation(f"an end is said to be from {data['low']} to {data['high']}")
-    return low, high

@@ -12,7 +12,7 @@ from flint import fmpq_mpoly
 
 from ptmcad.answer.regionmap import System
 from ptmcad.verification.claims import Claims
-from ptmcad.verification.derivation import Derivation, coordinates_of, derivation_of, parameters_of
+from ptmcad.verification.derivation import coordinates_of, derivation_of, parameters_of
 from ptmcad.verification.parameterclaims import on_slice
 from ptmcad.verification.polynomialtexts import PolynomialTexts
 from ptmcad.verification.report import Unchecked, Violation, drawn
@@ -45,12 +45,18 @@ def check_system(claims: Claims, seed: str = "") -> str:
     reasons = []
     if true.potential is not None:
         reasons.append(texts.compare_potential(system.potential, true.moments, varying=True))
-    reasons += _compared(texts, true.meaning.equation, system.gradient, true.equations)
-    for i, (row, slopes) in enumerate(zip(system.hessian, true.jacobian, strict=True)):
-        reasons += _compared(texts, true.meaning.entry.format(i, "{}"), row, slopes)
-    reasons += _compared(texts, "inequality {}", system.inequalities, true.inequalities)
-    reasons += _compared(texts, "condition {} for stability", system.stability, true.stability)
-    _check_free_lengths(claims, true)
+    entries = [true.meaning.entry.format(i, "{}") for i in range(len(true.jacobian))]
+    for what, stored, polynomials in (
+        (true.meaning.equation, system.gradient, true.equations),
+        *zip(entries, system.hessian, true.jacobian, strict=True),
+        ("inequality {}", system.inequalities, true.inequalities),
+        ("condition {} for stability", system.stability, true.stability),
+    ):
+        reasons += _compared(texts, what, stored, polynomials)
+    for what, value, strict in true.required:  # of one that is no parameter there it is zero
+        on_it = () if strict else on_slice(claims, true, value).values()
+        if not all(numerator.is_zero() for numerator, _ in on_it):
+            raise Violation(f"{what} is not zero, so that the map is of another mechanism")
     number = f"{len(reasons)} polynomials in {len(unknowns)} unknowns"
     return _outcome(reasons, f"{number} and {len(parameters)} parameters")
 
@@ -119,13 +125,3 @@ def _compared(
         raise Violation(f"there are {len(true)} of the kind {name.format('n')}, not {len(stored)}")
     pairs = enumerate(zip(stored, true, strict=True))
     return [texts.compare(name.format(k), text, p) for k, (text, p) in pairs]
-
-
-def _check_free_lengths(claims: Claims, true: Derivation) -> None:
-    """No spring has a free length on the slice; of one that is no parameter there it is zero."""
-    for what, value, strict in true.required:
-        if not (
-            strict
-            or all(numerator.is_zero() for numerator, _ in on_slice(claims, true, value).values())
-        ):
-            raise Violation(f"{what} is not zero, so that the map is of another mechanism")

@@ -35,6 +35,8 @@ from ptmcad.verification.principalminors import (
 )
 from ptmcad.verification.quotientalgebra import Monomial, NotFinite, algebra
 
+Matrices = Sequence[fmpq_mat]
+
 
 @dataclass(frozen=True)
 class SolutionAlgebra:
@@ -68,12 +70,13 @@ class SolutionAlgebra:
         """The matrix of multiplication by p, a polynomial in the coordinates."""
         total = fmpq_mat(self.dimension, self.dimension)
         for exponents, c in p.terms():
-            term = _identity(self.dimension) * c
-            for table, e in zip(self._own, exponents, strict=True):
-                for _ in range(int(e)):
-                    term = term * table
-            total = total + term
+            total = total + _product(_identity(self.dimension) * c, self._own, exponents)
         return total
+
+    @cached_property
+    def _required(self) -> list[fmpq_mat]:
+        """The matrices of multiplication by what is positive at solutions that count."""
+        return [self.matrix(p) for p in self.point.inequalities]
 
     @property
     def _own(self) -> tuple[fmpq_mat, ...]:
@@ -128,14 +131,7 @@ class SolutionAlgebra:
     @cached_property
     def _powers(self) -> list[fmpq_mat]:
         """The matrices of multiplication by the basis."""
-        return [self._monomial(m) for m in self.basis]
-
-    def _monomial(self, m: Monomial) -> fmpq_mat:
-        result = _identity(self.dimension)
-        for table, e in zip(self.tables, m, strict=True):
-            for _ in range(e):
-                result = result * table
-        return result
+        return [_product(_identity(self.dimension), self.tables, m) for m in self.basis]
 
     def counts(self) -> Counts | None:
         """Numbers of the real solutions that count, by index and stability; None when some solution
@@ -143,13 +139,12 @@ class SolutionAlgebra:
         """
         if self.norm() == 0:
             return None
-        required = [self.matrix(p) for p in self.point.inequalities]
-        if index := self._index(required):
+        if index := self._index(self._required):
             return Counts(sum(index), index[0], index)
-        total = self._number(required)
+        total = self.number_of_real_solutions()
         if not self.point.stability:
             return Counts(total, None, None)
-        wanted = [*required, *(self.matrix(p) for p in self.point.stability)]
+        wanted = [*self._required, *map(self.matrix, self.point.stability)]
         return Counts(total, self._number(wanted), None)
 
     def number_held(self) -> int:
@@ -169,7 +164,7 @@ class SolutionAlgebra:
         center : in the order of the model's coordinates.
         counted : whether only solutions that count are asked for.
         """
-        positive = [self.matrix(p) for p in self.point.inequalities if counted]
+        positive = self._required if counted else []
         number = self._number(positive)
         for table, x in zip(self._own, map(from_fraction, center), strict=True):
             off = table - _identity(self.dimension) * x
@@ -179,7 +174,7 @@ class SolutionAlgebra:
                 number, positive = left, [*positive, inside]
         return number, positive
 
-    def signs(self, positive: Sequence[fmpq_mat]) -> str:
+    def signs(self, positive: Matrices) -> str:
         """Of the only real solution at which functions are positive: those of the Hessian's
         eigenvalues, positive ones first, or of the conditions for stability.
         """
@@ -190,32 +185,28 @@ class SolutionAlgebra:
             "0+-"[self._sum_of_signs(positive, self.matrix(p))] for p in self.point.stability
         )
 
-    def is_degenerate(self, positive: Sequence[fmpq_mat]) -> bool:
+    def is_degenerate(self, positive: Matrices) -> bool:
         """Whether the only real solution at which functions are positive is a degenerate one."""
         return self.norm() == 0 and not self._sum_of_signs(positive, self.jacobian * self.jacobian)
 
     def number_of_real_solutions(self) -> int:
         """Of different ones that count, degenerate ones among them."""
-        return self._number([self.matrix(q) for q in self.point.inequalities])
+        return self._number(self._required)
 
     def number_of_zeros(self, p: fmpq_mpoly) -> int:
         """Of the real solutions that count, the number of those at which a polynomial is zero."""
-        required, square = (
-            [self.matrix(q) for q in self.point.inequalities],
-            self.matrix(p) * self.matrix(p),
-        )
-        return self.number_of_real_solutions() - self._sum_of_signs(required, square)
+        square = self.matrix(p) * self.matrix(p)
+        return self.number_of_real_solutions() - self._sum_of_signs(self._required, square)
 
     def balance(self) -> int:
         """The sum of the signs of the Jacobian's determinant over all real solutions."""
-        positive, negative = self.signature(self.jacobian)
-        return positive - negative
+        return self._sum_of_signs((), self.jacobian)
 
-    def _number(self, positive: Sequence[fmpq_mat]) -> int:
+    def _number(self, positive: Matrices) -> int:
         """The number of real solutions at which all of some functions are positive."""
         return self._sum_of_signs(positive, _identity(self.dimension))
 
-    def _sum_of_signs(self, positive: Sequence[fmpq_mat], weight: fmpq_mat) -> int:
+    def _sum_of_signs(self, positive: Matrices, weight: fmpq_mat) -> int:
         """The sum of the weight's signs over the real solutions at which all of some functions are
         positive.
 
@@ -224,15 +215,11 @@ class SolutionAlgebra:
         """
         total = 0
         for exponents in product((1, 2), repeat=len(positive)):
-            factor = weight
-            for function, e in zip(positive, exponents, strict=True):
-                for _ in range(e):
-                    factor = factor * function
-            plus, minus = self.signature(factor)
+            plus, minus = self.signature(_product(weight, positive, exponents))
             total += plus - minus
         return total >> len(positive)
 
-    def _index(self, required: Sequence[fmpq_mat]) -> tuple[int, ...]:
+    def _index(self, required: Matrices) -> tuple[int, ...]:
         """Numbers of the critical points that count by the number of negative eigenvalues, where
         none is zero; nothing of other solutions."""
         if not self.point.hessian:
@@ -241,9 +228,7 @@ class SolutionAlgebra:
         n = len(minors)
         sums: dict[tuple[int, ...], int] = {}
         for chosen in product((0, 1), repeat=n):
-            weight = _identity(self.dimension)
-            for minor, c in zip(minors, chosen, strict=True):
-                weight = weight * minor if c else weight
+            weight = _product(_identity(self.dimension), minors, chosen)
             sums[chosen] = self._sum_of_signs(required, weight)
         index = [0] * (n + 1)
         for signs in product((1, -1), repeat=n):
@@ -296,14 +281,15 @@ def fibre_over(point: Derivation) -> SolutionAlgebra:
     NotFinite
         When there are infinitely many complex solutions.
     """
-    if not point.inequalities:
-        return SolutionAlgebra(*algebra(point.generators(), point.coordinates), point)
     try:
         found = SolutionAlgebra(*algebra(point.generators(), point.coordinates), point)
-        if found.norm() != 0 and all(found.matrix(p).det() != 0 for p in point.inequalities):
+        if not point.inequalities or (
+            found.norm() != 0 and all(p.det() != 0 for p in found._required)
+        ):
             return found
     except NotFinite:
-        pass
+        if not point.inequalities:
+            raise
     return SolutionAlgebra(
         *algebra(_saturated(point), point.coordinates + 1), point, saturated=True
     )
@@ -319,11 +305,19 @@ def _saturated(point: Derivation) -> list[fmpq_mpoly]:
     return [*(ring.taken(p, point.ring) for p in point.generators()), product - 1]
 
 
+def _product(start: fmpq_mat, factors: Matrices, exponents: Sequence[int]) -> fmpq_mat:
+    """A matrix times powers of others."""
+    for factor, e in zip(factors, exponents, strict=True):
+        for _ in range(int(e)):
+            start = start * factor
+    return start
+
+
 def _identity(n: int) -> fmpq_mat:
     return fmpq_mat(n, n, [fmpq(int(i == j)) for i in range(n) for j in range(n)])
 
 
-def _traces_of_products(first: Sequence[fmpq_mat], second: Sequence[fmpq_mat]) -> fmpq_mat:
+def _traces_of_products(first: Matrices, second: Matrices) -> fmpq_mat:
     """The traces of f g for all f of the first and g of the second matrices.
 
     A trace is the sum of the products of the entries of f and of the transposed g, so all of them

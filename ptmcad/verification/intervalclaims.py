@@ -14,19 +14,22 @@ from typing import Any
 
 from flint import fmpz_poly
 
-from ptmcad.answer.intervals import End, lower, upper
+from ptmcad.answer.intervals import End
 from ptmcad.text.enclosure import AlgebraicNumber
 from ptmcad.text.flint_numbers import from_fraction
-from ptmcad.text.numerals import approximate_text, fraction_of, integer_of, shortest_text
+from ptmcad.text.numerals import fraction_of, integer_of, shortest_text
 from ptmcad.verification.parameterlines import LineGap, ParameterLine
 from ptmcad.verification.report import Violation
 from ptmcad.verification.rootcounts import roots_within
+
+Entry = Mapping[str, Any]
+"""A part of a document, as JSON has it."""
 
 
 def check_intervals(
     line: ParameterLine,
     gaps: Sequence[LineGap],
-    entries: Sequence[Mapping[str, Any]],
+    entries: Sequence[Entry],
     working: int | None,
 ) -> None:
     """The intervals are the longest ones of equal counts between changes: all of them, or those with
@@ -36,20 +39,18 @@ def check_intervals(
     ------
     Violation, NotKnown
     """
+    # ends are window's edges or critical values, so that the samples in an interval tell which it is
     ends = [(_end(line, entry["low"]), _end(line, entry["high"])) for entry in entries]
+    covering: list[int] = []
     for gap in gaps:
-        inside = [
-            entry
-            for entry, (low, high) in zip(entries, ends, strict=True)
-            if _is_below(low, gap.sample) and not _is_below(high, gap.sample)
-        ]
+        inside = [k for k, between in enumerate(ends) if _is_between(gap.sample, *between)]
         where, there = f"at {shortest_text(gap.sample)}", gap.counts
         if len(inside) != (working is None or gap.working == working):
             raise Violation(
                 f"{len(inside)} of the intervals are {where}, where there are {there.total} solutions"
             )
-        for entry in inside:
-            index = None if there.index is None else [*there.index]
+        index = None if there.index is None else [*there.index]
+        for entry in (entries[k] for k in inside):
             if (entry["total"], entry["stable"], entry["index"]) != (
                 there.total,
                 there.stable,
@@ -58,36 +59,24 @@ def check_intervals(
                 raise Violation(
                     f"{entry['total']} solutions are said to be {where}, where there are {there}"
                 )
+        covering += inside
     runs = [
-        (group[0], group[-1])
-        for _, group in ((c, list(g)) for c, g in groupby(gaps, lambda gap: gap.counts))
-        if working is None or group[0].working == working
+        counts
+        for counts, _ in groupby(gap.counts for gap in gaps)
+        if working in (None, counts.working)
     ]
     if len(runs) != len(entries):
         raise Violation(f"there are {len(runs)} intervals of equal counts, not {len(entries)}")
-    samples = [line.low, *(gap.sample for gap in gaps), line.high]
-    for (first, last), entry, (low, high) in zip(runs, entries, ends, strict=True):
-        # between neighbouring samples is one value at which counts can change
-        before = samples[gaps.index(first)]
-        after = samples[gaps.index(last) + 2]
-        if not (
-            _is_below(low, first.sample)
-            and not _is_below(low, before)
-            and not _is_below(high, last.sample)
-            and not _is_above(high, after)
-        ):
-            raise Violation(
-                f"an interval said to be about {entry['sample']} is not from "
-                f"{approximate_text(lower(first.low))} to {approximate_text(upper(last.high))}"
-            )
-        sample = fraction_of(entry["sample"])
-        if not _is_below(low, sample) or _is_below(high, sample):
+    if [k for k, _ in groupby(covering)] != [*range(len(entries))]:
+        raise Violation("the intervals are not in their order")
+    for entry, (low, high) in zip(entries, ends, strict=True):
+        if _side(low, line.low) < 0 or _side(high, line.high) > 0:
+            raise Violation(f"the interval about {entry['sample']} is not in the window")
+        if not _is_between(fraction_of(entry["sample"]), low, high):
             raise Violation(f"the sample {entry['sample']} is not in its interval")
 
 
-def check_changes(
-    line: ParameterLine, gaps: Sequence[LineGap], changes: Sequence[Mapping[str, Any]]
-) -> None:
+def check_changes(line: ParameterLine, gaps: Sequence[LineGap], changes: Sequence[Entry]) -> None:
     """Counts on the sides of changes are right, and a change is listed where they differ.
 
     Raises
@@ -99,7 +88,7 @@ def check_changes(
         number, polynomial = _root(change["at"])
         sides = change["before"], change["after"]
         if not line.critical % polynomial:
-            place = sum(not _is_below(number, gap.sample) for gap in gaps)
+            place = sum(_side(number, gap.sample) >= 0 for gap in gaps)
             true = tuple(map(_written_counts, gaps[max(place - 1, 0) : place + 1]))
             if sides != true:
                 raise Violation(f"counts do not change as is said near {float(number):.10g}")
@@ -121,7 +110,7 @@ def _written_counts(gap: LineGap) -> list[int] | dict[str, int | None]:
     return {"total": there.total, "stable": there.stable}
 
 
-def _end(line: ParameterLine, data: Mapping[str, Any]) -> End:
+def _end(line: ParameterLine, data: Entry) -> End:
     """An end of an interval, if counts can change there."""
     if "window" in data:
         if (edge := fraction_of(data["window"])) not in (line.low, line.high):
@@ -133,16 +122,25 @@ def _end(line: ParameterLine, data: Mapping[str, Any]) -> End:
     return number
 
 
-def _root(data: Mapping[str, Any]) -> tuple[AlgebraicNumber, fmpz_poly]:
+def enclosed_end(data: Entry) -> tuple[Fraction, Fraction]:
+    """The numbers between which an end is said to be.
+
+    Raises
+    ------
+    Violation
+    """
+    low, high = fraction_of(data["low"]), fraction_of(data["high"])
+    if low > high:
+        raise Violation(f"an end is said to be from {data['low']} to {data['high']}")
+    return low, high
+
+
+def _root(data: Entry) -> tuple[AlgebraicNumber, fmpz_poly]:
     """The only root of an irreducible polynomial between two numbers, and the polynomial."""
     polynomial = fmpz_poly(
         [integer_of(c.removeprefix("-")) * (-1 if c[:1] == "-" else 1) for c in data["polynomial"]]
     )
-    number = AlgebraicNumber(
-        tuple(map(int, polynomial)), fraction_of(data["low"]), fraction_of(data["high"])
-    )
-    if number.low > number.high:
-        raise Violation(f"an end is said to be from {data['low']} to {data['high']}")
+    number = AlgebraicNumber(tuple(map(int, polynomial)), *enclosed_end(data))
     if sum(multiplicity for _, multiplicity in polynomial.factor()[1]) != 1:
         raise Violation(f"the polynomial of an end near {float(number):.10g} is not irreducible")
     if roots_within(polynomial, from_fraction(number.low), from_fraction(number.high)) != 1:
@@ -152,9 +150,10 @@ def _root(data: Mapping[str, Any]) -> tuple[AlgebraicNumber, fmpz_poly]:
     return number, polynomial
 
 
-def _is_below(end: End, value: Fraction) -> bool:
-    return end < value if isinstance(end, Fraction) else end.compare(value) < 0
+def _side(end: End, value: Fraction) -> int:
+    """The sign of an end minus a value."""
+    return AlgebraicNumber.of(end).compare(value)
 
 
-def _is_above(end: End, value: Fraction) -> bool:
-    return end > value if isinstance(end, Fraction) else end.compare(value) > 0
+def _is_between(value: Fraction, low: End, high: End) -> bool:
+    return _side(low, value) < 0 <= _side(high, value)

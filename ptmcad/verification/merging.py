@@ -1,13 +1,10 @@
 """Checks of the map's shape, of merges and of regions, from the stored tables alone.
 
 Guarantee: cells, stacks and regions refer to each other consistently; the regions are the connected
-components of the joined adjacencies, found by breadth-first search.
+components of the joined adjacencies.
 """
 
 from __future__ import annotations
-
-from collections import defaultdict, deque
-from itertools import pairwise
 
 from ptmcad.answer.regionmap import Cell, Merge, RegionMap, Status
 from ptmcad.text.numerals import approximate_text
@@ -160,35 +157,23 @@ def check_merges(claims: Claims) -> str:
 def check_regions(claims: Claims) -> str:
     """The partition, and each region's counts, cells and sample."""
     r = claims.result
-    joined: dict[int, list[int]] = defaultdict(list)
+    parts = {n: frozenset([n]) for n in range(len(r.cells))}
     for a in r.adjacencies:
-        if a.merge is not Merge.SEPARATED:
-            joined[a.first].append(a.second)
-            joined[a.second].append(a.first)
-    label: dict[int, int] = {}
-    found: list[set[int]] = []
-    for start in range(len(r.cells)):
-        if start in label:
+        if a.merge is Merge.SEPARATED:
             continue
-        label[start] = len(found)
-        members, waiting = {start}, deque([start])
-        while waiting:
-            for n in joined[waiting.popleft()]:
-                if n not in members:
-                    members.add(n)
-                    label[n] = len(found)
-                    waiting.append(n)
-        found.append(members)
-    for one, two in pairwise(sorted(range(len(r.cells)), key=lambda n: (label[n], n))):
-        same = label[one] == label[two]
-        if same and r.cells[one].region != r.cells[two].region:
+        one, two = (r.cells[n].region for n in (a.first, a.second))
+        if one != two:
             raise Violation(
-                f"cells {one} and {two} are joined, but in regions {r.cells[one].region} and {r.cells[two].region}"
+                f"cells {a.first} and {a.second} are joined, but in regions {one} and {two}"
             )
+        if a.second not in parts[a.first]:
+            joined = parts[a.first] | parts[a.second]
+            parts |= dict.fromkeys(joined, joined)
+    found = {*parts.values()}
     if len(found) != len(r.regions):
         raise Violation(f"{len(r.regions)} regions are stored, the adjacencies make {len(found)}")
     for number, region in enumerate(r.regions):
-        members = {n for n, cell in enumerate(r.cells) if cell.region == number}
+        members = frozenset(n for n, cell in enumerate(r.cells) if cell.region == number)
         if members not in found or tuple(sorted(members)) != region.cells:
             raise Violation(
                 f"region {number} is said to have cells {region.cells}, not {tuple(sorted(members))}"

@@ -12,7 +12,7 @@ points of a line.
 from __future__ import annotations
 
 import random
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from fractions import Fraction
 from itertools import product
 
@@ -62,7 +62,7 @@ def check_text(claims: Claims) -> str:
         if name in slice.parameters and (slice.parameters[name] - axis(index)).numerator:
             raise Violation(f"{name} is an axis, but the parameter {name} is {_shown(slice, name)}")
     for name in sorted(alone | (model.shorthands.keys() & slice.text.keys())):
-        if not any(name in _names(n, text) for n, text in slice.text.items() if n != name):
+        if not any(name in named_in(n, text) for n, text in slice.text.items() if n != name):
             raise Violation(f"the parameter {name} is stored, but nothing depends on it")
     for name, expression in written(slice).items():
         if name in slice.parameters and (expression - slice.parameters[name]).numerator:
@@ -77,19 +77,27 @@ def check_text(claims: Claims) -> str:
 
 
 def written(slice: Slice) -> dict[str, Expression]:
-    """What each text says, by the axes and by texts explained before it.
+    """What each text of a slice says, as functions of its axes.
+
+    Raises
+    ------
+    Violation
+    """
+    return explained(slice.text, {name: axis(k) for k, name in enumerate(slice.axis_names)})
+
+
+def explained(texts: Mapping[str, str], known: Mapping[str, Expression]) -> dict[str, Expression]:
+    """What each text says, by what is known and by texts explained before it.
 
     Raises
     ------
     Violation
         When one is no expression, or names what is not explained.
     """
-    known = {slice.axis_names[0]: axis(0), slice.axis_names[1]: axis(1)}
-    found = {}
-    waiting = dict(slice.text)
+    known, found, waiting = dict(known), {}, dict(texts)
     while waiting:
         # one whose names are all known by now, so that nothing is explained by itself
-        ready = next((n for n, text in waiting.items() if _names(n, text) <= known.keys()), None)
+        ready = next((n for n, text in waiting.items() if named_in(n, text) <= known.keys()), None)
         if ready is None:
             raise Violation(
                 f"the texts kept for {', '.join(sorted(waiting))[:80]} name what is not explained"
@@ -109,7 +117,13 @@ def _shown(slice: Slice, name: str) -> str:
     return slice.parameters[name].to_text(slice.axis_names)[:60]
 
 
-def _names(name: str, text: str) -> set[str]:
+def named_in(name: str, text: str) -> set[str]:
+    """The names in the text kept for one.
+
+    Raises
+    ------
+    Violation
+    """
     try:
         return set(names_in(text))
     except ExpressionError as error:

@@ -41,11 +41,11 @@ from ptmcad.text.enclosure import AlgebraicNumber
 from ptmcad.text.expressions import Expression
 from ptmcad.text.flint_numbers import from_fraction, simplest_fraction, to_fraction
 from ptmcad.text.numerals import shortest_text
+from ptmcad.verification.derivation import not_positive
 from ptmcad.verification.fibrealgebra import fibre
 from ptmcad.verification.quotientalgebra import NotFinite
 from ptmcad.verification.report import Unchecked, Violation
 from ptmcad.verification.rootcounts import isolating_intervals, squarefree
-from ptmcad.verification.solutions import not_positive
 
 FRESH = 3
 BITS = (256, 1024, 4096)

@@ -13,11 +13,9 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
-from math import gcd
 
 from ptmcad.answer.regionmap import HARMLESS, NO_POINT, Component, Kind, PlanStep, RegionMap
 from ptmcad.errors import ConfigError
-from ptmcad.question.slice import Slice
 from ptmcad.verification.claims import Claims, PlaneCurve
 from ptmcad.verification.derivation import derivation_of
 from ptmcad.verification.kinds import kind_of
@@ -118,12 +116,7 @@ def _is_choice(reason: str) -> bool:
 def _expected(result: RegionMap) -> Iterator[PlanStep]:
     """The plan; the reason is empty where predicted costs decided."""
     names = result.slice.axis_names
-    zero = ", ".join(n for n, e in result.slice.parameters.items() if not e.numerator)
-    for saving, what, why in _general(result.slice):
-        if saving == "equal-counts" and _NO_AREAS in result.plan:
-            yield _NO_AREAS
-        elif zero or saving:
-            yield PlanStep(what.format(zero=zero), False, why, saving)
+    yield from _general(result)
     for c in result.components:
         yield _of_component(c, names)
     this, other = (f"decomposition over {names[axis]}" for axis in (result.base, 1 - result.base))
@@ -135,20 +128,27 @@ def _expected(result: RegionMap) -> Iterator[PlanStep]:
         yield PlanStep("discriminants and resultants of full degree", False, why, "even-powers")
 
 
-def _general(slice: Slice) -> Iterator[tuple[str, str, str]]:
-    """What a plan says of every slice of a model by a kind of count: names, subjects and reasons."""
-    model = slice.model
+def _general(result: RegionMap) -> Iterator[PlanStep]:
+    """What a plan says of every slice of a model by a kind of count."""
+    slice, model = result.slice, result.slice.model
     true = kind_of(slice.count).with_margins(derivation_of(model))
-    kept = bool(model.reals or true.inequalities or true.stability)
+    zero = ", ".join(n for n, e in slice.parameters.items() if not e.numerator)
+    is_made = {
+        "": bool(zero),
+        "sign-curve": true.meaning.order > 1,
+        "infinity": not (model.reals or true.inequalities or true.stability),
+    }
     for saving, what, why in _GENERAL:
-        if saving == "sign-curve" and true.meaning.order < 2:
+        if not is_made.get(saving, True):
             continue
-        if saving == "infinity" and kept:
+        if saving == "equal-counts" and _NO_AREAS in result.plan:
+            yield _NO_AREAS
             continue
         if saving == "sign-curve" and len(model.unknowns) > 2:
-            yield saving, "projections of the leading minors of H", _NO_SIGN_CHANGE
+            subject, reason = "projections of the leading minors of H", _NO_SIGN_CHANGE
         else:
-            yield saving, what, why.replace("det H", true.meaning.determinant)
+            subject, reason = what.format(zero=zero), why.replace("det H", true.meaning.determinant)
+        yield PlanStep(subject, False, reason, saving)
 
 
 def _of_component(c: Component, names: tuple[str, str]) -> PlanStep:
@@ -162,7 +162,7 @@ def _of_component(c: Component, names: tuple[str, str]) -> PlanStep:
 def _even_powers(result: RegionMap) -> Iterator[str]:
     for n, c in enumerate(result.components):
         for axis, name in enumerate(result.slice.axis_names):
-            power = gcd(*(term[axis] for term in c.polynomial.terms))
+            power = PlaneCurve(n, c.polynomial.terms).exponent_gcd(axis)
             if power > 1 and not c.left_out and 0 not in c.polynomial.degrees:
                 yield f"{name}^{power} in component {n}"
 
@@ -183,7 +183,5 @@ def _check_left_out(claims: Claims) -> None:
     if _NO_AREAS in result.plan:
         x, y = result.slice.axes
         window = (x.high - x.low) * (y.high - y.low)
-        if any(
-            low != 0 or high < window for low, high in (region.area for region in result.regions)
-        ):
+        if any(region.area[0] != 0 or region.area[1] < window for region in result.regions):
             raise Violation("areas are known, but the plan says that they were not asked for")

@@ -22,7 +22,7 @@ from ptmcad.options import Progress
 from ptmcad.question.counts import Count
 from ptmcad.question.slice import Axis, Point, Slice
 from ptmcad.text.expressions import constant
-from ptmcad.verification.certified.cellsamples import check_cell, check_listed
+from ptmcad.verification.certified.cellsamples import check_cell, why_not_listed
 from ptmcad.verification.certified.coverclaims import CertifiedClaims
 from ptmcad.verification.certified.models import BUDGETS
 from ptmcad.verification.claims import Claims
@@ -30,7 +30,7 @@ from ptmcad.verification.derivation import parameters_of
 from ptmcad.verification.kinds import kind_of, meaning_of
 from ptmcad.verification.normalform.boxes import Unproved
 from ptmcad.verification.report import CheckProgress, Unchecked, VerifyReport, Violation, checked
-from ptmcad.verification.solutions import check_disjoint, map_of, signs_in
+from ptmcad.verification.solutions import check_disjoint, map_of, place_of, signs_in
 
 _EXACT = Fraction(1, 2**100)
 """Half the width of the box of a pose whose coordinates are all known exactly."""
@@ -127,8 +127,9 @@ def _check_with_free_lengths(claims: CertifiedClaims, cell: Cell, found: Poses) 
             untold[str(reason)] = None
     try:
         if found.status is Status.UNDECIDED:
-            number = check_listed(claims, cell)
-            more = f"whether there are more than the {number} listed"
+            if (doubt := why_not_listed(claims, cell)) is not None:
+                raise doubt
+            more = f"whether there are more than the {len(cell.solutions)} listed"
             return Unchecked("; ".join((more if untold else f"{more}, which hold", *untold)))
         if len(found.model.unknowns) > len(BUDGETS):
             untold["whether there are more"] = None
@@ -246,10 +247,7 @@ def _check_degenerate(claims: CertifiedClaims, cell: Cell, box: Solution) -> Non
     Violation
     """
     fibre = claims.fibre_at(*cell.sample)
-    number, place = fibre.within(box.center, box.radius, counted=True)
-    if number != 1:
-        raise Violation(f"{number or 'no'} solution{'s' * (number > 1)} found in it")
-    if not fibre.is_degenerate(place):
+    if not fibre.is_degenerate(place_of(fibre, box)):
         raise Violation("the solution in it is called degenerate; it is regular")
 
 

@@ -31,12 +31,13 @@ from math import gcd, prod
 from flint import arb, arb_poly, ctx, fmpq, fmpz, fmpz_poly
 
 from ptmcad.answer.regionmap import CriticalValue
-from ptmcad.text.flint_numbers import from_fraction
+from ptmcad.text.flint_numbers import from_fraction, interval_of
 from ptmcad.text.numerals import text_of
 from ptmcad.verification.claims import Claims, PlaneCurve, ball, is_root, polynomial, short, side
 from ptmcad.verification.planecurves import discriminant, resultant
 from ptmcad.verification.report import Violation
 from ptmcad.verification.rootcounts import (
+    Interval,
     ball_chain,
     ends_of,
     isolated,
@@ -45,25 +46,37 @@ from ptmcad.verification.rootcounts import (
     real_roots,
     roots_between,
     roots_within,
+    squarefree,
 )
 
 
-def projection_of_one(curve: PlaneCurve, height: tuple[fmpq, fmpq]) -> list[tuple[fmpz_poly, str]]:
+def projection_of_one(curve: PlaneCurve, height: Interval) -> list[tuple[fmpz_poly, str]]:
     """Irreducible polynomials outside whose roots the curve's roots in the open interval are
     constant in number.
 
     Each with its origin, in the words of `ptmcad.answer.regionmap.CriticalValue`.
     """
-    k, m = curve.exponent_gcd(0), curve.exponent_gcd(1)
-    name = f"component {curve.number}"
+    m, name = curve.exponent_gcd(1), f"component {curve.number}"
     found = [(curve.along(edge), f"{name}: crosses the window's edge") for edge in height]
     if curve.degrees[1] > m:
-        found.append(
-            (discriminant(curve.deflated(k, m)).inflate(k), f"{name}: turning or singular point")
-        )
+        found.append((_turning(curve), f"{name}: turning or singular point"))
     if m > 1 and height[0] < 0 < height[1]:
         found.append((curve.in_v[0], f"{name}: turning point on the axis"))
     return [(f, origin) for p, origin in found for f in _factors(p)]
+
+
+def _turning(curve: PlaneCurve) -> fmpz_poly:
+    """The discriminant in powers of u and v; where a power of v is zero, and v is a multiple root,
+    it need not vanish.
+    """
+    k, m = curve.exponent_gcd(0), curve.exponent_gcd(1)
+    return discriminant(curve.deflated(k, m)).inflate(k)
+
+
+def _meeting(one: PlaneCurve, other: PlaneCurve) -> fmpz_poly:
+    """The resultant in powers of u and v that both curves have."""
+    k, m = (gcd(one.exponent_gcd(axis), other.exponent_gcd(axis)) for axis in (0, 1))
+    return resultant(one.deflated(k, m), other.deflated(k, m)).inflate(k)
 
 
 def points_over(curve: PlaneCurve, value: CriticalValue) -> fmpz_poly:
@@ -77,8 +90,8 @@ def points_over(curve: PlaneCurve, value: CriticalValue) -> fmpz_poly:
     m = curve.exponent_gcd(1)
     # eliminated is the second variable, so u and v change places
     constant = tuple((0, i // k, int(a)) for i, a in enumerate(q.coeffs()) if a)
-    points = resultant(tuple((j, i, c) for i, j, c in curve.deflated(k, m)), constant).inflate(m)
-    return points // points.gcd(points.derivative())
+    swapped = tuple((j, i, c) for i, j, c in curve.deflated(k, m))
+    return squarefree(resultant(swapped, constant).inflate(m))
 
 
 def _factors(p: fmpz_poly) -> tuple[fmpz_poly, ...]:
@@ -98,10 +111,8 @@ def _projection(claims: Claims) -> dict[tuple[int, ...], tuple[fmpz_poly, set[st
     for i, c in enumerate(claims.curves):
         found += projection_of_one(c, claims.height)
         for d in claims.curves[i + 1 :]:
-            k = gcd(c.exponent_gcd(0), d.exponent_gcd(0))
-            m = gcd(c.exponent_gcd(1), d.exponent_gcd(1))
-            common = resultant(c.deflated(k, m), d.deflated(k, m)).inflate(k)
-            found += [(f, f"components {c.number} and {d.number} meet") for f in _factors(common)]
+            meet = f"components {c.number} and {d.number} meet"
+            found += [(f, meet) for f in _factors(_meeting(c, d))]
     merged: dict[tuple[int, ...], tuple[fmpz_poly, set[str]]] = {}
     for f, origin in found:
         merged.setdefault(tuple(int(c) for c in f.coeffs()), (f, set()))[1].add(origin)
@@ -119,15 +130,15 @@ def check_critical_values(claims: Claims) -> str:
                 f"critical value {n}: its polynomial is no irreducible factor of a discriminant, resultant "
                 "or edge value"
             )
-        low, high = from_fraction(value.low), from_fraction(value.high)
-        interval = f"[{text_of(value.low)}, {text_of(value.high)}]"
+        low, high = interval_of(value)
+        between = f"[{text_of(value.low)}, {text_of(value.high)}]"
         p = polynomial(value)
         if not previous < low <= high < claims.base[1]:
             raise Violation(
-                f"critical value {n} in {interval} is not above the one before it and in the window"
+                f"critical value {n} in {between} is not above the one before it and in the window"
             )
         if (roots := roots_within(p, low, high)) != 1:
-            raise Violation(f"critical value {n}: its polynomial has {roots} roots in {interval}")
+            raise Violation(f"critical value {n}: its polynomial has {roots} roots in {between}")
         previous = high
     origins: list[set[str]] = [set() for _ in values]
     for coefficients, (f, whence) in factors.items():
@@ -148,7 +159,7 @@ def check_critical_values(claims: Claims) -> str:
     return f"{len(values)} values, {len(factors)} irreducible discriminants, resultants and edge values"
 
 
-def _unmatched(f: fmpz_poly, claims: Claims, matching: Sequence[int]) -> list[tuple[fmpq, fmpq]]:
+def _unmatched(f: fmpz_poly, claims: Claims, matching: Sequence[int]) -> list[Interval]:
     stored = [claims.result.critical_values[n] for n in matching]
     return [
         (a, b)
@@ -296,10 +307,10 @@ class Heights:
     @cached_property
     def _has_multiple_root(self) -> bool:
         """Whether one of the curves has a multiple root over the value, or two have one in common."""
-        return any(is_root(discriminant(c.terms), self.value) for c in self.curves) or any(
-            is_root(resultant(c.terms, d.terms), self.value)
-            for c, d in combinations(self.curves, 2)
-        )
+        zeros = [_turning(curve) for curve in self.curves]
+        zeros += [curve.in_v[0] for curve in self.curves if curve.exponent_gcd(1) > 1]
+        zeros += [_meeting(c, d) for c, d in combinations(self.curves, 2)]
+        return any(is_root(p, self.value) for p in zeros)
 
     @cached_property
     def _polynomial(self) -> fmpz_poly:

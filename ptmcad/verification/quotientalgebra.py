@@ -8,6 +8,7 @@ lexicographic order with the last variable first.
 from __future__ import annotations
 
 from itertools import product
+from math import lcm
 
 from flint import Ordering, fmpq, fmpq_mat, fmpq_mpoly, fmpz_mpoly_ctx, fmpz_mpoly_vec
 
@@ -24,15 +25,11 @@ def algebra(
 ) -> tuple[tuple[Monomial, ...], tuple[fmpq_mat, ...]]:
     """The standard monomials, and the matrix of multiplication by each variable, last to first."""
     rules = _reduced_basis(equations, variables)
-    width = range(variables)
-    if not all(any(sum(lead) == lead[k] for lead in rules) for k in width):
+    # for each variable the power of it that is a leading monomial, 0 where 1 is one
+    powers = [[lead[k] for lead in rules if sum(lead) == lead[k]] for k in range(variables)]
+    if not all(powers):
         raise NotFinite
-    bounds = [
-        next(lead[k] for lead in rules if sum(lead) == lead[k])
-        if (0,) * variables not in rules
-        else 0
-        for k in width
-    ]
+    bounds = map(min, powers)
     basis = tuple(
         sorted(
             (
@@ -62,14 +59,10 @@ def algebra(
         known[m] = row
         return row
 
-    tables = []
-    for k in width:
-        columns = [normal(tuple(e + (i == k) for i, e in enumerate(m))) for m in basis]
-        tables.append(
-            fmpq_mat(
-                len(basis), len(basis), [column[i] for i in range(len(basis)) for column in columns]
-            )
-        )
+    tables, size = [], len(basis)
+    for k in range(variables):
+        columns = [c for m in basis for c in normal(tuple(e + (i == k) for i, e in enumerate(m)))]
+        tables.append(fmpq_mat(size, size, columns).transpose())
     return basis, tuple(tables)
 
 
@@ -82,17 +75,13 @@ def _reduced_basis(
     )
     integral = []
     for e in equations:
-        scale = 1
-        for c in e.coeffs():
-            scale = scale * int(c.q)
-        integral.append(
-            ring.from_dict({m[::-1]: int((c * scale).p) for m, c in e.to_dict().items()})
-        )
-    vector = fmpz_mpoly_vec([p.primitive()[1] for p in integral], ring)
+        scale = lcm(*(int(c.q) for c in e.coeffs()))
+        terms = {m[::-1]: int((c * scale).p) for m, c in e.to_dict().items()}
+        integral.append(ring.from_dict(terms).primitive()[1])
+    vector = fmpz_mpoly_vec(integral, ring)
     rules: dict[Monomial, dict[Monomial, fmpq]] = {}
     for p in vector.buchberger_naive().autoreduction():
-        terms = [(tuple(int(e) for e in m), fmpq(c)) for m, c in p.terms()]
-        (lead, c), tail = terms[0], terms[1:]
+        (lead, c), *tail = [(tuple(int(e) for e in m), fmpq(c)) for m, c in p.terms()]
         rules[lead] = {m: -d / c for m, d in tail}
     return rules
 

@@ -8,10 +8,9 @@ as long as it can be. Of enclosed ones, with free lengths, that of
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from fractions import Fraction
 from functools import partial
-from typing import Any
 
 from ptmcad.answer.counts import Counts, operation_number
 from ptmcad.answer.widths import Maximum
@@ -24,7 +23,7 @@ from ptmcad.verification.certified.parameterdomain import check_domain
 from ptmcad.verification.claims import Claims
 from ptmcad.verification.derivation import parameters_of
 from ptmcad.verification.enclosedclaims import check_enclosed
-from ptmcad.verification.intervalclaims import check_changes, check_intervals
+from ptmcad.verification.intervalclaims import Entry, check_changes, check_intervals
 from ptmcad.verification.parameterclaims import check_text
 from ptmcad.verification.parameterlines import (
     NotKnown,
@@ -57,7 +56,7 @@ UNCHECKED = {
 
 
 def verify_range(
-    data: Mapping[str, Any],
+    data: Entry,
     slice: Slice,
     progress: Progress | None = None,
     maxima: Sequence[Maximum] = (),
@@ -114,11 +113,11 @@ def verify_range(
     return VerifyReport(tuple(checks))
 
 
-_Asked = tuple[Mapping[str, Any], Slice, str]
+_Asked = tuple[Entry, Slice, str]
 """The document, its slice, and the seed."""
 
 
-def _line(slice: Slice, along: Mapping[str, Any], seed: str, value: Fraction) -> ParameterLine:
+def _line(slice: Slice, along: Entry, seed: str, value: Fraction) -> ParameterLine:
     """The line along one axis at a value of the other one."""
     low, high = map(fraction_of, along["window"])
     known = {
@@ -132,7 +131,7 @@ def _line(slice: Slice, along: Mapping[str, Any], seed: str, value: Fraction) ->
     return ParameterLine(slice.model, parameters, low, high, seed)
 
 
-def _check_axes(data: Mapping[str, Any], slice: Slice) -> None:
+def _check_axes(data: Entry, slice: Slice) -> None:
     """Each part is along an axis of the slice over its whole window, as it was asked for.
 
     Raises
@@ -170,7 +169,7 @@ def _check_axes(data: Mapping[str, Any], slice: Slice) -> None:
             raise Violation(f"there is no answer {' or '.join(sorted(kinds))}, which was asked for")
 
 
-def _check_axis(key: str, direction: str, found: Mapping[str, Any], axis: Axis) -> None:
+def _check_axis(key: str, direction: str, found: Entry, axis: Axis) -> None:
     low, high = map(fraction_of, found["window"])
     if (found["name"], low, high) != (axis.name, axis.low, axis.high):
         raise Violation(f"{key}: {direction} is not the axis {axis} of the slice")
@@ -224,7 +223,7 @@ def _check_rows(asked: _Asked, maxima: Sequence[Maximum]) -> str:
     return Unchecked(told) if unknown else told
 
 
-def _working(part: Mapping[str, Any]) -> int:
+def _working(part: Entry) -> int:
     return int(part["total"] if part["stable"] is None else part["stable"])
 
 

@@ -7,11 +7,12 @@ listed as such.
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterator, Sequence
 from contextvars import ContextVar
 from dataclasses import dataclass
 from decimal import Decimal
 from fractions import Fraction
+from functools import partial
 from html import escape
 from textwrap import fill
 from typing import Any, TypeVar
@@ -21,6 +22,8 @@ from ptmcad.options import Progress
 from ptmcad.text.numerals import fraction_of
 
 C = TypeVar("C")
+Within = Callable[[int, int], None]
+"""Called with the numbers of parts of a check that are done, and of all."""
 
 COLUMNS = 80
 WIDTH = 22
@@ -143,13 +146,13 @@ def check_anew(
 ) -> Check:
     """Compare a document, as JSON's data, with the one that the same question gives now.
 
-    Of a document of another version it is said in what it differs. That this is false is said where
-    it is known what may differ rightly.
+    Of a document of another version its differences are not checked, but where it is known what may
+    differ rightly: there all others are false.
 
     Parameters
     ----------
-    rightly : the keys of what another version may have written otherwise. Besides, its enclosures
-        may be wider, and it may not have decided what is true or false now.
+    rightly : the keys of what another version may have written otherwise. In addition, its
+        enclosures may be wider, and it may have left open what is decided now.
     finer : asked where they differ, gives the document with more digits. An enclosure that has the
         one in there holds, whatever the one found now is; of one that only meets it nothing is
         said.
@@ -159,100 +162,82 @@ def check_anew(
         part.get("versions") if isinstance(part, dict) else None for part in (stored, found)
     ]
     earlier = versions[0] != versions[1]
-    if earlier and rightly is not None:
-        places = list(_contradictions(stored, found, rightly))
-        if (wrong := next((p for p in places if not isinstance(p, Unchecked)), None)) is not None:
-            return Check(name, method, False, shown(wrong))
-        detail = "of another version; the answer now agrees with it"
-        if not places:
-            return Check(name, method, True, detail)
-        return Check(name, method, None, f"another version made it; now {places[0]}")
-    if next(_differences(stored, found, None, earlier), None) is None:
-        return Check(name, method, True, "the answer is the same now")
-    places = list(_differences(stored, found, finer(), earlier))
-    if not places:
-        return Check(
-            name, method, True, "the answer is the same now; enclosures have those with more digits"
-        )
+    differences = partial(_differences, stored, found, earlier=earlier, rightly=rightly)
+    detail = "the answer is the same now"
+    places = list(differences(None))
+    if places and (more := finer()) is not None:
+        detail += "; enclosures have those with more digits"
+        places = list(differences(more))
     if earlier:
-        return Check(name, method, None, f"another version made it; now {places[0]}")
-    false = next((place for place in places if not isinstance(place, Unchecked)), None)
-    return Check(name, method, None if false is None else False, shown(false or places[0]))
+        detail = "of another version; the answer now agrees with it"
+    if not places:
+        return Check(name, method, True, detail)
+    can_be_false = not earlier or rightly is not None
+    false = [place for place in places if not isinstance(place, Unchecked)] if can_be_false else []
+    first = (false or places)[0]
+    if earlier and not false:
+        first = f"another version made it; now {first}"
+        first += f"; {len(places) - 1} more entries differ" * (len(places) > 1)
+    return Check(name, method, False if false else None, shown(first))
 
 
 def _differences(
-    stored: Any, found: Any, finer: Any, earlier: bool, place: str = ""
+    stored: Any,
+    found: Any,
+    finer: Any,
+    place: str = "",
+    *,
+    earlier: bool,
+    rightly: Collection[str] | None,
 ) -> Iterator[str]:
-    if stored != found and _is_enclosure(stored) and _is_enclosure(finer):
-        (low, high), (least, most) = _ends(stored), _ends(finer)
-        is_rounded = _is_decimal_of(stored["decimal"], (least, most))
+    """In what a document differs; `Unchecked` where that is no contradiction."""
+    differs = f"{place.lstrip('.')} is {found!r:.80}, not {stored!r:.80}"
+    ends, true = _ends(stored), _ends(finer) or (_ends(found) if earlier else None)
+    parts, others, fine = _parts(stored), _parts(found), _parts(finer)
+    if ends and true:
+        (low, high), (least, most) = ends, true
+        is_rounded = _is_decimal_of(stored.get("decimal"), true)
         if not (low <= least and most <= high and is_rounded):
-            differs = f"{place} is in {least!s:.30} to {most!s:.30}, not {stored!r:.80}"
+            differs = f"{place.lstrip('.')} is in {least!s:.30} to {most!s:.30}, not {stored!r:.80}"
             yield Unchecked(differs) if low <= most and least <= high and is_rounded else differs
-        return
-    # what an earlier version did not write of a part is no difference
-    fits = isinstance(stored, dict) and isinstance(found, dict) and stored.keys() <= found.keys()
-    if fits and (stored.keys() == found.keys() or (place and earlier)):
-        for key in sorted(stored.keys() - {"versions"}):
-            part = finer.get(key) if isinstance(finer, dict) else None
-            yield from _differences(
-                stored[key], found[key], part, earlier, f"{place}.{key}".lstrip(".")
-            )
-    elif isinstance(stored, list) and isinstance(found, list) and len(stored) == len(found):
-        parts = (
-            finer if isinstance(finer, list) and len(finer) == len(found) else [None] * len(found)
-        )
-        for k, (one, other, part) in enumerate(zip(stored, found, parts, strict=True)):
-            yield from _differences(one, other, part, earlier, f"{place}[{k}]")
+    elif earlier and place.rpartition(".")[2] in (rightly or ()):
+        if stored != found:
+            yield Unchecked(differs)
+    elif (
+        type(stored) is type(found)
+        and (parts or others)
+        and (isinstance(stored, dict) or len(parts) == len(others))
+    ):
+        for key in dict.fromkeys([*parts, *others]):
+            where = f"{place}{key}"
+            if key in parts and key in others:
+                pair = parts[key], others[key], fine.get(key), where
+                yield from _differences(*pair, earlier=earlier, rightly=rightly)
+            # what an earlier version did not write of a part is no difference
+            elif key in parts or not (place and earlier and rightly is None):
+                yield f"{where.lstrip('.')} is {'not there' if key in parts else 'missing'}"
     elif (type(stored), stored) != (type(found), found):
-        yield f"{place} is {found!r:.80}, not {stored!r:.80}"
-
-
-def _contradictions(
-    stored: Any, found: Any, rightly: Collection[str], place: str = ""
-) -> Iterator[str]:
-    """Where a document contradicts one of another version; `Unchecked` where they differ without a
-    contradiction.
-    """
-    differs = f"{place} is {found!r:.80}, not {stored!r:.80}"
-    if _is_number(stored) and _is_number(found):
-        (low, high), (least, most) = _reach(stored), _reach(found)
-        if not (low <= least and most <= high):
-            yield Unchecked(differs) if low <= most and least <= high else differs
-    elif isinstance(stored, dict) and isinstance(found, dict):
-        for key in sorted((stored.keys() | found.keys()) - {"versions"}):
-            where = f"{place}.{key}".lstrip(".")
-            if key in rightly:
-                if stored.get(key) != found.get(key):
-                    differs = f"{where} is {found.get(key)!r:.80}, not {stored.get(key)!r:.80}"
-                    yield Unchecked(differs)
-            elif key not in found or key not in stored:
-                yield f"{where} is {'not there' if key in stored else 'missing'}"
-            else:
-                yield from _contradictions(stored[key], found[key], rightly, where)
-    elif isinstance(stored, list) and isinstance(found, list) and len(stored) == len(found):
-        for k, (one, other) in enumerate(zip(stored, found, strict=True)):
-            yield from _contradictions(one, other, rightly, f"{place}[{k}]")
-    elif (type(stored), stored) != (type(found), found):
-        is_open = {type(stored), type(found)} == {bool, type(None)}
+        is_open = earlier and {type(stored), type(found)} == {bool, type(None)}
         yield Unchecked(differs) if is_open else differs
 
 
-def _is_number(entry: Any) -> bool:
-    return isinstance(entry, dict) and entry.keys() == {"text", "center", "radius"}
+def _parts(entry: Any) -> dict[str, Any]:
+    """What is in a mapping or a list, by its place there; nothing in anything else."""
+    if isinstance(entry, dict):
+        return {f".{key}": part for key, part in entry.items() if key != "versions"}
+    return {f"[{k}]": part for k, part in enumerate(entry if isinstance(entry, list) else ())}
 
 
-def _reach(number: Mapping[str, str]) -> tuple[Fraction, Fraction]:
-    center, radius = fraction_of(number["center"]), fraction_of(number["radius"])
-    return center - radius, center + radius
-
-
-def _is_enclosure(entry: Any) -> bool:
-    return isinstance(entry, dict) and entry.keys() == {"low", "high", "decimal"}
-
-
-def _ends(enclosure: Mapping[str, str]) -> tuple[Fraction, Fraction]:
-    return fraction_of(enclosure["low"]), fraction_of(enclosure["high"])
+def _ends(entry: Any) -> tuple[Fraction, Fraction] | None:
+    """Of an enclosure, as documents have them; None of anything else."""
+    if not isinstance(entry, dict):
+        return None
+    if entry.keys() == {"low", "high", "decimal"}:
+        return fraction_of(entry["low"]), fraction_of(entry["high"])
+    if entry.keys() == {"text", "center", "radius"}:
+        center, radius = fraction_of(entry["center"]), fraction_of(entry["radius"])
+        return center - radius, center + radius
+    return None
 
 
 def _is_decimal_of(text: str | None, ends: tuple[Fraction, Fraction]) -> bool:
@@ -263,6 +248,13 @@ def _is_decimal_of(text: str | None, ends: tuple[Fraction, Fraction]) -> bool:
     return all(abs(fraction_of(text) - end) <= unit for end in ends)
 
 
+PROVENANCE = Check(
+    "provenance",
+    "",
+    None,
+    "name, title, reference, versions, precision, timings: no claims about the regions",
+)
+"""What no check is of."""
 PARTS = 100
 """Of each check, for a bar that shows how far a verification is."""
 

@@ -20,6 +20,10 @@ from typing import Any
 
 from flint import arb, arb_poly, ctx, fmpq, fmpz_poly
 
+Interval = tuple[fmpq, fmpq]
+Coefficients = tuple[int, ...]
+"""Of a polynomial, the constant one first."""
+
 
 def squarefree(p: fmpz_poly) -> fmpz_poly:
     """The squarefree part of a nonzero polynomial, up to a constant."""
@@ -39,7 +43,7 @@ def roots_between(p: fmpz_poly, low: fmpq, high: fmpq) -> int:
     return roots_above(coefficients, low) - roots_above(coefficients, high) - (p(high) == 0)
 
 
-def roots_above(coefficients: tuple[int, ...], at: fmpq) -> int:
+def roots_above(coefficients: Coefficients, at: fmpq) -> int:
     """The number of different real roots above a number, of a polynomial that is not constant."""
     p = _simple(coefficients)
     bits, most = 96, 8 * p.height_bits() + 64 * len(coefficients)
@@ -54,12 +58,12 @@ def roots_above(coefficients: tuple[int, ...], at: fmpq) -> int:
 
 
 @lru_cache(maxsize=4096)
-def _simple(coefficients: tuple[int, ...]) -> fmpz_poly:
+def _simple(coefficients: Coefficients) -> fmpz_poly:
     return squarefree(fmpz_poly(list(coefficients)))
 
 
 @lru_cache(maxsize=4096)
-def _ball_chain(coefficients: tuple[int, ...], bits: int) -> list[arb_poly] | None:
+def _ball_chain(coefficients: Coefficients, bits: int) -> list[arb_poly] | None:
     p = _simple(coefficients)
     with ctx.workprec(bits):
         return ball_chain(arb_poly(p), int(p.degree()), 0)
@@ -103,7 +107,7 @@ def _signs(first: fmpq, chain: Sequence[arb_poly], at: fmpq) -> list[bool] | Non
 
 
 @lru_cache(maxsize=4096)
-def _changes_at_infinity(coefficients: tuple[int, ...], bits: int) -> int:
+def _changes_at_infinity(coefficients: Coefficients, bits: int) -> int:
     chain = _ball_chain(coefficients, bits) or ()
     return _changes([q[len(chain) - 1 - k] > 0 for k, q in enumerate(chain)])
 
@@ -112,7 +116,7 @@ def _changes(signs: Sequence[bool]) -> int:
     return sum(a != b for a, b in pairwise(signs))
 
 
-def _balls_above(p: fmpz_poly, coefficients: tuple[int, ...], at: fmpq) -> int:
+def _balls_above(p: fmpz_poly, coefficients: Coefficients, at: fmpq) -> int:
     """The same by FLINT's isolation of all roots, where a Sturm sequence has a gap."""
     is_root, bits = p(at) == 0, 64
     while True:
@@ -123,7 +127,7 @@ def _balls_above(p: fmpz_poly, coefficients: tuple[int, ...], at: fmpq) -> int:
 
 
 @lru_cache(maxsize=256)
-def real_roots(coefficients: tuple[int, ...], bits: int) -> tuple[arb, ...]:
+def real_roots(coefficients: Coefficients, bits: int) -> tuple[arb, ...]:
     """Disjoint balls with one real root each, of so many bits."""
     with ctx.workprec(bits):
         pairs: Any = squarefree(
@@ -132,7 +136,7 @@ def real_roots(coefficients: tuple[int, ...], bits: int) -> tuple[arb, ...]:
         return tuple(root.real for root, _ in pairs if root.imag == 0)
 
 
-def ends_of(ball: arb) -> tuple[fmpq, fmpq]:
+def ends_of(ball: arb) -> Interval:
     """The least and the greatest number in a ball, to be compared with rational numbers.
 
     A ball itself compares with a rational number rounded to the working precision, which may be far
@@ -149,14 +153,14 @@ def roots_within(p: fmpz_poly, low: fmpq, high: fmpq) -> int:
     return roots_between(p, low, high) + (p(low) == 0) + (p(high) == 0)
 
 
-def isolating_intervals(p: fmpz_poly, low: fmpq, high: fmpq) -> list[tuple[fmpq, fmpq]]:
+def isolating_intervals(p: fmpz_poly, low: fmpq, high: fmpq) -> list[Interval]:
     """Disjoint open intervals, strictly inside, with one root each; no end is a root."""
     return isolated(lambda a, b: roots_between(p, a, b), lambda v: p(v) == 0, low, high)
 
 
 def isolated(
     count: Callable[[fmpq, fmpq], int], is_root: Callable[[fmpq], bool], low: fmpq, high: fmpq
-) -> list[tuple[fmpq, fmpq]]:
+) -> list[Interval]:
     """Disjoint open intervals, strictly inside (low, high), with one root each of what a function
     counts.
 
@@ -186,7 +190,7 @@ def separated_points(p: fmpz_poly, low: fmpq, high: fmpq) -> list[fmpq]:
     return parting(isolating_intervals(p, low, high), low, high)
 
 
-def parting(roots: Sequence[tuple[fmpq, fmpq]], low: fmpq, high: fmpq) -> list[fmpq]:
+def parting(roots: Sequence[Interval], low: fmpq, high: fmpq) -> list[fmpq]:
     """A rational point in each open interval that is left of (low, high), given the roots'
     isolating intervals.
     """
@@ -231,7 +235,7 @@ def numbered_root(p: fmpz_poly, low: fmpq, high: fmpq, number: int) -> arb | Non
 
 
 @lru_cache(maxsize=64)
-def _counted_above(coefficients: tuple[int, ...]) -> Callable[[fmpq], int]:
+def _counted_above(coefficients: Coefficients) -> Callable[[fmpq], int]:
     """`roots_above`, for walls over the same abscissa, whose roots are told apart at the same
     heights.
     """

@@ -23,7 +23,7 @@ from collections.abc import Mapping, Sequence
 from fractions import Fraction
 from itertools import combinations
 
-from flint import arb, ctx
+from flint import arb, ctx, fmpq_mat
 
 from ptmcad.answer.counts import Counts, euler_sum
 from ptmcad.answer.regionmap import Cell, RegionMap, Solution, Status, System
@@ -35,7 +35,7 @@ from ptmcad.verification.certified.ballequations import Matrix
 from ptmcad.verification.certified.narrow import narrowed, precisions, tested
 from ptmcad.verification.claims import Claims
 from ptmcad.verification.coordinates import ball_at
-from ptmcad.verification.derivation import Derivation
+from ptmcad.verification.derivation import Derivation, not_positive
 from ptmcad.verification.fibrealgebra import SolutionAlgebra
 from ptmcad.verification.kinds import kind_of
 from ptmcad.verification.principalminors import inertia
@@ -102,9 +102,7 @@ def signs_in(claims: Claims, cell: Cell, solution: Solution) -> tuple[str, bool]
             signs = _tested(fibre.point, solution)
         if signs is not None:
             return signs, True
-    number, place = fibre.within(solution.center, solution.radius, counted=True)
-    if number != 1:
-        raise Violation(f"{number or 'no'} solution{'s' * (number > 1)} found in it")
+    place = place_of(fibre, solution)
     if fibre.is_degenerate(place):
         raise Violation("the solution in it is degenerate")
     if not fibre.point.inequalities:
@@ -115,6 +113,20 @@ def signs_in(claims: Claims, cell: Cell, solution: Solution) -> tuple[str, bool]
     if real > 1:
         raise Violation(f"{real} real solutions are in it")
     return fibre.signs(place), not fibre.saturated
+
+
+def place_of(fibre: SolutionAlgebra, solution: Solution) -> list[fmpq_mat]:
+    """Functions that are all positive at the one solution that counts in a box, and at no other.
+
+    Raises
+    ------
+    Violation
+        When there is none, or several.
+    """
+    number, place = fibre.within(solution.center, solution.radius, counted=True)
+    if number != 1:
+        raise Violation(f"{number or 'no'} solution{'s' * (number > 1)} found in it")
+    return place
 
 
 def _check_index(claims: Claims, n: int, cell: Cell) -> None:
@@ -241,14 +253,6 @@ def _text(counts: Counts) -> str:
     if counts.index is not None:
         parts.append(f"index {counts.index}")
     return ", ".join(parts)
-
-
-def not_positive(model: Model, values: Mapping[str, Fraction]) -> str | None:
-    """A length or stiffness that is not positive, or None."""
-    for name in model.positive:
-        if values[name] <= 0:
-            return name
-    return next((name for name in model.nonnegative if values.get(name, 0) < 0), None)
 
 
 def map_of(slice: Slice, cells: tuple[Cell, ...], status: Status = Status.EXACT) -> RegionMap:

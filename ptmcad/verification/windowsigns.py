@@ -15,6 +15,7 @@ factors of odd multiplicity does. Nothing is shared with what the engines ask
 from __future__ import annotations
 
 from enum import Enum
+from itertools import product
 
 from flint import fmpq, fmpq_mpoly, fmpq_poly, fmpz_poly
 
@@ -25,7 +26,12 @@ from ptmcad.verification.claims import Claims, PlaneCurve, short
 from ptmcad.verification.planecurves import factored, polynomial
 from ptmcad.verification.projections import Heights, projection_of_one
 from ptmcad.verification.report import Violation
-from ptmcad.verification.rootcounts import isolating_intervals, roots_between, separated_points
+from ptmcad.verification.rootcounts import (
+    Interval,
+    isolating_intervals,
+    roots_between,
+    separated_points,
+)
 
 HALVINGS = 4
 """Times that the window's sides are halved before a curve may be used although it has no point in
@@ -34,7 +40,6 @@ the window.
 
 
 RUNS = "runs through the window"
-Interval = tuple[fmpq, fmpq]
 
 
 def check_left_out(claims: Claims) -> str:
@@ -122,11 +127,7 @@ def plainly_outside(curve: PlaneCurve, claims: Claims) -> bool:
 
 
 def _one_sign(
-    rows: list[fmpq_poly],
-    degree: int,
-    base: tuple[fmpq, fmpq],
-    height: tuple[fmpq, fmpq],
-    strict: bool = False,
+    rows: list[fmpq_poly], degree: int, base: Interval, height: Interval, strict: bool = False
 ) -> bool:
     lines = [_on_half_line(row, degree, base) for row in rows]
     signs = set()
@@ -140,11 +141,11 @@ def _one_sign(
     return 0 not in signs
 
 
-def _on_half_line(p: fmpq_poly, degree: int, interval: tuple[fmpq, fmpq]) -> fmpq_poly:
+def _on_half_line(p: fmpq_poly, degree: int, ends: Interval) -> fmpq_poly:
     """(1 + x)^degree p((low + high x)/(1 + x)): its values for x > 0 are those of p in the
     interval, times a power.
     """
-    low, high = interval
+    low, high = ends
     on_unit = p(fmpq_poly([low, high - low]))  # p(low + (high - low) z), z = x/(1 + x)
     reversed_ = fmpq_poly(
         [on_unit[degree - i] for i in range(degree + 1)]
@@ -187,8 +188,7 @@ def is_in_domain(e: Expression, window: Window, strict: bool) -> Sign:
 
 def _side(p: fmpq_mpoly, window: Window) -> int:
     """The sign at the window's middle, where it has one."""
-    (u0, u1), (v0, v1) = window
-    return -1 if p((u0 + u1) / 2, (v0 + v1) / 2) < 0 else 1
+    return -1 if _at(p, window, fmpq(1, 2), fmpq(1, 2)) < 0 else 1
 
 
 def _sign(p: fmpq_mpoly, window: Window, strict: bool) -> Sign:
@@ -197,22 +197,18 @@ def _sign(p: fmpq_mpoly, window: Window, strict: bool) -> Sign:
         PlaneCurve.of(0, f, 0) for f, multiplicity in factored(p) if strict or multiplicity % 2
     ]
     if any(min(f.degrees) > 0 and sum(f.degrees) > MAX_DEGREE for f in relevant):
-        (u0, u1), (v0, v1) = window
         grid = [fmpq(k, 32) for k in range(1, 32)]
-        values = (p(u0 + (u1 - u0) * s, v0 + (v1 - v0) * t) for s in grid for t in grid)
+        values = (_at(p, window, s, t) for s in grid for t in grid)
         return Sign.WRONG if any(value < 0 for value in values) else Sign.UNCHECKED
     met = {point_in_window(f, *window, isolated=strict) for f in relevant}
-    if RUNS in met or _generic_value(p, window) < 0:
+    # of low degree, so that it is not zero at all of so many points
+    values = (_at(p, window, fmpq(1, k), fmpq(1, m)) for k, m in product(range(2, 200), repeat=2))
+    if RUNS in met or next(value for value in values if value != 0) < 0:
         return Sign.WRONG
     return Sign.PROVED if met <= {None} else Sign.UNCHECKED
 
 
-def _generic_value(p: fmpq_mpoly, window: Window) -> fmpq:
-    """The value at a point where it is not zero."""
+def _at(p: fmpq_mpoly, window: Window, s: fmpq, t: fmpq) -> fmpq:
+    """The value at shares of the window's sides."""
     (u0, u1), (v0, v1) = window
-    for k in range(2, 200):
-        for m in range(2, 200):
-            value = p(u0 + (u1 - u0) / k, v0 + (v1 - v0) / m)
-            if value != 0:
-                return value
-    raise ArithmeticError("a polynomial of low degree is zero at 39204 points of a grid")
+    return fmpq(p(u0 + (u1 - u0) * s, v0 + (v1 - v0) * t))

@@ -70,6 +70,17 @@ def test_a_file_that_is_no_result(
     assert capsys.readouterr().err.startswith(f"error: {path}: {said}")
 
 
+@pytest.mark.parametrize("text", ["[]", "{}", "{", '{"format": "ptmcad-sweep/1"}'])
+def test_verify_says_what_it_reads(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], text: str
+) -> None:
+    path = tmp_path / "odd.json"
+    path.write_text(text, encoding="utf-8")
+    assert run(["verify", str(path)]) == 2
+    said = "this is no result that can be verified: those are the JSON files of `ptmcad classify`"
+    assert capsys.readouterr().err.startswith(f"error: {path}: {said}")
+
+
 @pytest.mark.parametrize(
     "command", [["solve", "--at", "rho=1"], ["range", "--along", "rho", "--at", "L2=3/2"]]
 )

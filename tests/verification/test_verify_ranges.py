@@ -253,7 +253,7 @@ def enclosed_by_nothing(data: Any) -> None:
         ("over", a_row_less, "rows are not at 4 equal distances"),
         ("line", a_point_more, "2 intervals of equal counts, not 3"),
         ("line", overlapping, "2 intervals of equal counts, not 3"),
-        ("line", turned, "is not from -2 to 0.75"),
+        ("line", turned, "the intervals are not in their order"),
         ("line", a_short_one, "0 of the intervals are at"),
         ("line", halves, "counts cannot change at"),
         ("line", another_sample, "is not in its interval"),

@@ -7,16 +7,16 @@ which `ptmcad.verification.certified.sampling` tries points.
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from fractions import Fraction
 
 from ptmcad.answer.regionmap import Cell
 from ptmcad.verification.certified.counted import differs, stored
 from ptmcad.verification.certified.coverclaims import CertifiedClaims
 from ptmcad.verification.kinds import kind_of, numbers_for
-from ptmcad.verification.normalform.boxes import Unproved, Zero
+from ptmcad.verification.normalform.boxes import Unproved, Zero, in_words
 from ptmcad.verification.normalform.waves import form_of
-from ptmcad.verification.report import Unchecked, Violation
+from ptmcad.verification.report import Unchecked, Violation, Within
 
 HOPELESS = 16
 """Samples or random points whose counts were not decided, after which no more are tried."""
@@ -44,7 +44,7 @@ class _InBoxes(Unproved):
 
 def check_points(
     claims: CertifiedClaims,
-    report: Callable[[int, int], None] = lambda _done, _total: None,
+    report: Within = lambda *_: None,
 ) -> str:
     """Counts and stored solutions of every cell; and for how many cells nothing was proved.
 
@@ -148,7 +148,7 @@ def _check_boxes(claims: CertifiedClaims, cell: Cell, kept: Sequence[Zero]) -> N
         e = claims.counting.in_box(*cell.sample, solution, k)
         match = [i for i, other in enumerate(kept) if claims.counting.same(e, other)]
         if len(match) != 1 or match[0] in taken:
-            near = ", ".join(f"{x:.6g}" for x in e.center)
+            near = in_words(e.center)
             raise Violation(f"the solution {k} near ({near}) is stored twice, or not asked for")
         _check_signs(claims, kept[match[0]].signs, solution.signs, k)
         taken.add(match[0])
@@ -189,7 +189,7 @@ def _check_beside(claims: CertifiedClaims, cell: Cell, reason: Unproved) -> int:
         raise Violation(
             f"the signs of the listed solutions are not those of the index {cell.index}"
         )
-    in_boxes = _listed(claims, cell)
+    in_boxes = why_not_listed(claims, cell)
     if (found := _decided(claims, cell)) is None:
         raise reason
     if in_boxes is not None:
@@ -197,20 +197,7 @@ def _check_beside(claims: CertifiedClaims, cell: Cell, reason: Unproved) -> int:
     return len(cell.solutions)
 
 
-def check_listed(claims: CertifiedClaims, cell: Cell) -> int:
-    """Each stored box holds one solution of its signs at the sample, each another one; how many
-    these are.
-
-    Raises
-    ------
-    Violation, Unproved
-    """
-    if (reason := _listed(claims, cell)) is not None:
-        raise reason
-    return len(cell.solutions)
-
-
-def _listed(claims: CertifiedClaims, cell: Cell) -> Unproved | None:
+def why_not_listed(claims: CertifiedClaims, cell: Cell) -> Unproved | None:
     """Why it is not decided of a stored box that it holds one solution of its signs; None where all
     do.
 

@@ -6,7 +6,7 @@ Guarantee: exact; the components of the cover's complement are found by
 
 from __future__ import annotations
 
-from collections import Counter
+from collections import Counter, defaultdict
 from dataclasses import replace
 from fractions import Fraction
 from functools import cached_property
@@ -28,6 +28,9 @@ from ptmcad.verification.report import Violation
 
 MAX_STEPS = 2**40
 MAX_UNKNOWNS = 3
+
+
+Neighbours = dict[int, list[int]]
 
 
 class CertifiedClaims(Claims):
@@ -66,8 +69,6 @@ class CertifiedClaims(Claims):
 
     def cell_at(self, u: Fraction, v: Fraction) -> int | None:
         """The cell of a point in lattice steps; None where it is in none."""
-        if not (0 < u < self.sweep.steps and 0 < v < self.sweep.steps):
-            return None
         component = self.sweep.locate(u, v)
         return None if component is None else self.cell_of.get(component)
 
@@ -82,13 +83,13 @@ class CertifiedClaims(Claims):
         return half
 
     @cached_property
-    def neighbours(self) -> tuple[dict[int, list[int]], dict[int, list[int]]]:
+    def neighbours(self) -> tuple[Neighbours, Neighbours]:
         """The clusters beside each component, and the components around each cluster."""
-        beside: dict[int, list[int]] = {}
-        around: dict[int, list[int]] = {}
+        beside: Neighbours = defaultdict(list)
+        around: Neighbours = defaultdict(list)
         for component, cluster in sorted(self.sweep.touching):
-            beside.setdefault(component, []).append(cluster)
-            around.setdefault(cluster, []).append(component)
+            beside[component].append(cluster)
+            around[cluster].append(component)
         return beside, around
 
     @cached_property
@@ -103,11 +104,11 @@ class CertifiedClaims(Claims):
         found: dict[int, int] = {}
         for n, cell in enumerate(self.result.cells):
             u, v = self.lattice.on(*cell.sample)
-            if not (0 < u < self.sweep.steps and 0 < v < self.sweep.steps):
-                raise Violation(f"the sample of cell {n} is not in the window")
             component = self.sweep.locate(u, v)
             if component is None:
-                raise Violation(f"the sample of cell {n} is in a rectangle of the cover")
+                inside = min(u, v) > 0 and max(u, v) < self.sweep.steps
+                where = "in a rectangle of the cover" if inside else "not in the window"
+                raise Violation(f"the sample of cell {n} is {where}")
             if component in found:
                 raise Violation(
                     f"the samples of cells {found[component]} and {n} are not parted by the cover"
@@ -240,9 +241,7 @@ def _reach(claims: CertifiedClaims, component: int) -> int:
     beside, around = claims.neighbours
     components, clusters, waiting = {component}, set[int](), [component]
     while waiting:
-        for cluster in beside.get(waiting.pop(), ()):
-            if cluster in clusters:
-                continue
+        for cluster in {*beside[waiting.pop()]} - clusters:
             clusters.add(cluster)
             more = {c for c in around[cluster] if c not in cells} - components
             components |= more

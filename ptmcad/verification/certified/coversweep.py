@@ -16,12 +16,15 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from itertools import pairwise
-from typing import Any
+from operator import attrgetter
 
 from ptmcad.cover.rectangles import Cover
 
 Entry = tuple[int, int]
 """Of a rectangle: left, right."""
+
+
+_left, _right = attrgetter("left"), attrgetter("right")
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,7 +59,9 @@ class CoverSweep:
     touching: frozenset[tuple[int, int]]
 
     def locate(self, u: Fraction, v: Fraction) -> int | None:
-        """The component of a point of the open window; None where it is in the cover."""
+        """The component of a point; None where it is in the cover, or not in the open window."""
+        if min(u, v) <= 0 or max(u, v) >= self.steps:
+            return None
         found = {
             self.component_of[item.node] if item.free else None
             for item in self._items((u, v), (u, v))
@@ -79,37 +84,6 @@ class CoverSweep:
             while k < len(row) and row[k].left <= high[0]:
                 yield row[k]
                 k += 1
-
-
-def _right(item: Item) -> Any:
-    return item.right
-
-
-@dataclass(slots=True)
-class _Sets:
-    """Disjoint sets of gaps or of blocks, which grow together, with what is known of their areas so
-    far.
-    """
-
-    parent: list[int]
-    free: list[bool]
-    areas: list[int]
-
-    def add(self, free: bool, area: int) -> int:
-        self.parent.append(len(self.parent))
-        self.free.append(free)
-        self.areas.append(area)
-        return len(self.parent) - 1
-
-    def top(self, n: int) -> int:
-        while self.parent[n] != n:
-            self.parent[n] = self.parent[self.parent[n]]
-            n = self.parent[n]
-        return n
-
-    def join(self, one: int, two: int) -> None:
-        one, two = self.top(one), self.top(two)
-        self.parent[max(one, two)] = min(one, two)
 
 
 def sweep(cover: Cover) -> CoverSweep:
@@ -138,11 +112,15 @@ def sweep(cover: Cover) -> CoverSweep:
 
 
 class _Strips:
-    """The strips so far, and how what is in them hangs together."""
+    """The strips so far, and their gaps and blocks as disjoint sets that grow together, with what is
+    known of their areas.
+    """
 
     def __init__(self, steps: int) -> None:
         self._steps = steps
-        self._sets = _Sets([], [], [])
+        self._parent: list[int] = []
+        self._free: list[bool] = []
+        self._areas: list[int] = []
         self._pairs: set[tuple[int, int]] = set()
         self._rows: list[tuple[Item, ...]] = []
         self._row: list[Item] = []
@@ -162,7 +140,7 @@ class _Strips:
             left, right = (old[0].left, old[-1].right) if old else (0, self._steps)
             inner = active[bisect_left(active, (left,)) : bisect_left(active, (right,))]
             new = [
-                Item(a, b, free, self._sets.add(free, -(b - a) * low))
+                Item(a, b, free, self._added(free, -(b - a) * low))
                 for a, b, free in _gaps_and_blocks(inner, left, right)
             ]
             self._grow(old, low)
@@ -175,27 +153,40 @@ class _Strips:
             row[first:last] = new
         self._rows.append(tuple(row))
 
+    def _added(self, free: bool, area: int) -> int:
+        self._parent.append(len(self._parent))
+        self._free.append(free)
+        self._areas.append(area)
+        return len(self._parent) - 1
+
+    def _top(self, n: int) -> int:
+        parent = self._parent
+        while parent[n] != n:
+            parent[n] = parent[parent[n]]
+            n = parent[n]
+        return n
+
     def _meet(self, one: Item, two: Item, *, along: bool) -> None:
         """Two items touch: along an edge, or in a corner."""
         if one.free != two.free:
             self._pairs.add((one.node, two.node) if one.free else (two.node, one.node))
         elif along or not one.free:
-            self._sets.join(one.node, two.node)
+            tops = self._top(one.node), self._top(two.node)
+            self._parent[max(tops)] = min(tops)
 
     def _grow(self, items: Sequence[Item], height: int) -> None:
         """Items end at a line: their areas are those below it, less what is below their beginning."""
         for item in items:
-            self._sets.areas[item.node] += (item.right - item.left) * height
+            self._areas[item.node] += (item.right - item.left) * height
 
     def result(self, lines: tuple[int, ...]) -> CoverSweep:
         """All of it, once the last strip is there."""
-        sets = self._sets
         self._grow(self._row, self._steps)
-        component_of = tuple(map(sets.top, sets.parent))
+        component_of = tuple(map(self._top, self._parent))
         areas: dict[int, int] = defaultdict(int)
         cluster_areas: dict[int, int] = defaultdict(int)
-        for n, is_free in enumerate(sets.free):
-            (areas if is_free else cluster_areas)[component_of[n]] += sets.areas[n]
+        for top, is_free, area in zip(component_of, self._free, self._areas, strict=True):
+            (areas if is_free else cluster_areas)[top] += area
         return CoverSweep(
             self._steps,
             lines,
@@ -220,10 +211,6 @@ def _zones(changed: Sequence[Entry], row: Sequence[Item]) -> list[tuple[int, int
         before = found.pop() if found and zone[0] <= found[-1][1] else zone
         found.append((before[0], max(before[1], zone[1])))
     return found
-
-
-def _left(item: Item) -> Any:
-    return item.left
 
 
 def _gaps_and_blocks(

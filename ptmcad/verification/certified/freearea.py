@@ -7,7 +7,7 @@ no critical point over it. A violation is a point of a cell with other counts th
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from fractions import Fraction
 from itertools import pairwise
 from typing import Any
@@ -16,7 +16,7 @@ from ptmcad.verification.certified.coverclaims import CertifiedClaims
 from ptmcad.verification.certified.sampling import check_point
 from ptmcad.verification.exclusion.pieces import Pieces, pieces_in
 from ptmcad.verification.normalform.boxes import Unproved
-from ptmcad.verification.report import Unchecked
+from ptmcad.verification.report import Unchecked, Within
 
 EFFORT, MAX_EFFORT = 2, 10
 BOXES_AT_FIRST, GROWTH = 10_000, 4
@@ -37,7 +37,7 @@ _SQUARES = 1024
 def check_free_area(
     effort: int,
     claims: CertifiedClaims,
-    report: Callable[[int, int], None] = lambda _done, _total: None,
+    report: Within = lambda *_: None,
 ) -> str:
     """Exclude critical points over the free area; what share of it is proved, and where nothing
     was.

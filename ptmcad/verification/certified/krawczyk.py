@@ -28,6 +28,7 @@ from ptmcad.verification.normalform.boxes import (
     Zero,
     disjoint,
     halves,
+    in_words,
     inside,
     within,
 )
@@ -107,20 +108,20 @@ def _steps(values: Sequence[arb], inverse: arb_mat) -> list[arb]:
     return steps
 
 
-def image_of(field: BallEquations, box: Box, jet: BallJet) -> list[arb] | None:
-    """Krawczyk's image of a box, less its middle."""
-    return image(field(list(map(arb, box[0]))).values, jet.jacobian, list(map(arb, box[1])))
+def _inverse_at(field: BallEquations, center: Sequence[float]) -> tuple[BallJet, arb_mat] | None:
+    """The equations at a point, and the inverse of their Jacobian; None where it is not known."""
+    jet = field([arb(x) for x in center])
+    inverse = None if jet.short else inverse_of(jet.jacobian)
+    return None if inverse is None else (jet, inverse)
 
 
 def newton(field: BallEquations, box: Box) -> Floats | None:
     """Where Newton's method comes to rest from a box's middle, near the box; None when it does not."""
     x, share = list(box[0]), 1.0
     for _ in range(_NEWTON_STEPS):
-        jet = field([arb(c) for c in x])
-        inverse = None if jet.short else inverse_of(jet.jacobian)
-        if inverse is None:
+        if (found := _inverse_at(field, x)) is None:
             return None
-        steps = [float(s.mid()) for s in _steps(jet.values, inverse)]
+        steps = [float(s.mid()) for s in _steps(found[0].values, found[1])]
         x = [c - s for c, s in zip(x, steps, strict=True)]
         if not all(abs(c - m) <= 2 * r for c, m, r in zip(x, *box, strict=True)):
             return None
@@ -139,12 +140,10 @@ def proved(field: BallEquations, center: Floats, shapes: Iterable[Floats]) -> Ze
     """The solution around a point that is alone in a box of some shape; None when it is not proved,
     nor its signs.
     """
-    jet = field([arb(x) for x in center])
-    inverse = None if jet.short else inverse_of(jet.jacobian)
-    if inverse is None:
+    if (found := _inverse_at(field, center)) is None:
         return None
-    values = jet.values
-    least = [step.abs_upper() for step in _steps(values, inverse)]
+    jet, values = found[0], found[0].values
+    least = [step.abs_upper() for step in _steps(values, found[1])]
     for shape, power in product(_with_steep(jet.jacobian, shapes), _SHRINKINGS):
         sizes = tuple(r * 2.0**power for r in shape)
         if any(
@@ -269,28 +268,26 @@ def zeros(
         jet = field(list(map(arb, *box)))
         if any(v > 0 or v < 0 for v in jet.values) or any(c < 0 for c in jet.conditions):
             continue
-        image = None if jet.short else image_of(field, box, jet)
-        if image is not None:
-            if any(abs(step) > r for step, r in zip(image, box[1], strict=True)):
+        steps = None
+        if not jet.short:
+            steps = image(field(list(map(arb, box[0]))).values, jet.jacobian, [*map(arb, box[1])])
+        if steps is not None:
+            if any(abs(step) > r for step, r in zip(steps, box[1], strict=True)):
                 continue
-            new = _settled(field, box, found, whole) if _contracts(box, image) else None
+            # an image not much wider than its box makes it worth looking for a solution
+            is_promising = all(
+                step.rad() < _PROMISING * r for step, r in zip(steps, box[1], strict=True)
+            )
+            new = _settled(field, box, found, whole) if is_promising else None
             if new is not None and all(disjoint(new, zero, circles) for zero in found):
                 found.append(new)
                 if inside(box, new, circles):
                     continue
         parts = halves(box, _widest(box, whole), least)
         if parts is None:
-            where = ", ".join(f"{x:.6g}" for x in box[0])
-            raise Unproved(f"a solution near ({where}) may be degenerate")
+            raise Unproved(f"a solution near ({in_words(box[0])}) may be degenerate")
         waiting += parts
     return found
-
-
-def _contracts(box: Box, image: Sequence[arb]) -> bool:
-    """Whether Krawczyk's image of a box is not much wider, so that it is worth looking for a
-    solution in it.
-    """
-    return all(step.rad() < _PROMISING * r for step, r in zip(image, box[1], strict=True))
 
 
 def _settled(field: BallEquations, box: Box, found: Sequence[Zero], whole: Floats) -> Zero | None:
@@ -307,8 +304,7 @@ def _persisting(field: BallEquations, zero: Zero, whole: Floats) -> Zero:
     """The solution for all parameters that one for some parameters belongs to."""
     persisting = proved(field, zero.center, _shapes(zero.alone, whole))
     if persisting is None:
-        where = ", ".join(f"{x:.6g}" for x in zero.center)
-        raise Unproved(f"the solution near ({where}) may not persist")
+        raise Unproved(f"the solution near ({in_words(zero.center)}) may not persist")
     return persisting
 
 

@@ -11,24 +11,30 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from flint import arb, ctx
 
 from ptmcad.answer.counts import euler_sum
 from ptmcad.answer.regionmap import Solution
 from ptmcad.errors import PoleError
-from ptmcad.model import Model
 from ptmcad.question.counts import Count
-from ptmcad.question.slice import Slice
 from ptmcad.text.balls import ball_of
 from ptmcad.verification.certified.ballequations import BallEquations, Matrix
 from ptmcad.verification.certified.counted import CellCounts, CountedPoint
 from ptmcad.verification.certified.krawczyk import Spent, zeros
 from ptmcad.verification.certified.narrow import is_wide, precisions, tested
 from ptmcad.verification.coordinates import evaluated
+from ptmcad.verification.derivation import not_positive
 from ptmcad.verification.kinds import kind_of
-from ptmcad.verification.normalform.boxes import MIN_HALF_WIDTH, Floats, Unproved, Zero, is_same
+from ptmcad.verification.normalform.boxes import (
+    MIN_HALF_WIDTH,
+    Floats,
+    Unproved,
+    Zero,
+    in_words,
+    is_same,
+)
 from ptmcad.verification.normalform.lattice import Range, SliceLattice
 from ptmcad.verification.normalform.waves import Form, Sides, form_of, sides
 from ptmcad.verification.principalminors import inertia
@@ -37,6 +43,8 @@ from ptmcad.verification.report import Violation
 if TYPE_CHECKING:
     from ptmcad.verification.exclusion.places import Isolation, SolutionPlaces
 
+Values = Mapping[str, arb]
+"""Of the parameters."""
 PRECISIONS = ((53, MIN_HALF_WIDTH), (128, 2.0**-80))
 """Bits, and the share of all configurations below which boxes are not halved: a spring may be as
 short as that.
@@ -75,7 +83,7 @@ class ModelCounting:
 
     def at(self, x: Fraction, y: Fraction) -> CountedPoint:
         """At a point of the window."""
-        values = _values_at(self.lattice.slice, self.form, x, y)
+        values = self._values(x, y)
         u, v = self.lattice.on(x, y)
         starts = self._places((u, u), (v, v))
         reason: Unproved | None = None
@@ -102,9 +110,8 @@ class ModelCounting:
         slice = self.lattice.slice
         x, y = self.lattice.balls(u, v)
         values = self.lattice.values(u, v)
-        for name, value in values.items():
-            if not _is_in_domain(slice.model, name, value):
-                raise Unproved(f"{name} may be outside of its domain")
+        if (name := not_positive(slice.model, values)) is not None:
+            raise Unproved(f"{name} may be outside of its domain")
         if not all(evaluated(cone.pull, values) >= 0 for cone in self.form.cones):
             raise Unproved("a stiffness times a free length may be negative")
         # boxes much smaller than the box of parameters are excluded no better than larger ones
@@ -114,7 +121,7 @@ class ModelCounting:
 
     def _found(
         self,
-        values: Mapping[str, arb],
+        values: Values,
         starts: Sequence[Isolation],
         smallest: float,
         there: CountedPoint | None = None,
@@ -136,7 +143,7 @@ class ModelCounting:
             ]
         return found
 
-    def _counts(self, values: Mapping[str, arb], found: Sequence[Zero]) -> CellCounts:
+    def _counts(self, values: Values, found: Sequence[Zero]) -> CellCounts:
         """The counts, with the number of stable solutions with margins where these are asked for.
 
         Raises
@@ -144,12 +151,11 @@ class ModelCounting:
         Unproved
             When a margin may be zero at a stable solution.
         """
-        counts, kind = counts_of(self.form, found, self._count), kind_of(self._count)
-        if not kind.is_predicate:
+        counts = counts_of(self.form, found, self._count)
+        if not kind_of(self._count).is_predicate:
             return counts
-        field = BallEquations(self.form, values, ("margins",))
         stable = (zero for zero in found if "-" not in zero.signs)
-        number = sum(_has_margins(field, zero, kind.undecided) for zero in stable)
+        number = sum(self._has_margins(values, zero) for zero in stable)
         return replace(counts, further={self._count.value: number})
 
     def in_box(self, x: Fraction, y: Fraction, solution: Solution, k: int) -> Zero:
@@ -167,8 +173,8 @@ class ModelCounting:
             When one may be, or may be next to it.
         """
         _check_box(self.form, solution, k)
-        values = _values_at(self.lattice.slice, self.form, x, y)
-        near = f"box {k} of the solutions, around ({', '.join(f'{float(c):.6g}' for c in solution.center)})"
+        values = self._values(x, y)
+        near = f"box {k} of the solutions, around ({in_words(map(float, solution.center))})"
         try:
             found = [_zero_in(self.form, values, side, solution) for side in sides(self.form)]
         except Unproved:
@@ -182,7 +188,7 @@ class ModelCounting:
         """The signs of the conditions for stability at a solution at a point of the window; empty
         where there are none, or one is not certain.
         """
-        values = _balls(_values_at(self.lattice.slice, self.form, x, y))
+        values = _balls(self._values(x, y))
         for side in sides(self.form) if self.form.conditions_for_stability else ():
             field = _field(self.form, values, Count.STABLE, side)
             if _may_be_on_side(field, zero.within):
@@ -197,9 +203,34 @@ class ModelCounting:
         Unproved
             When one may be zero.
         """
-        values = _balls(_values_at(self.lattice.slice, self.form, x, y))
+        return self._has_margins(_balls(self._values(x, y)), zero)
+
+    def _has_margins(self, values: Values, zero: Zero) -> bool:
         field = BallEquations(self.form, values, ("margins",))
-        return _has_margins(field, zero, kind_of(self._count).undecided)
+        return _are_positive(field(zero.within).conditions, kind_of(self._count).undecided)
+
+    def _values(self, x: Fraction, y: Fraction) -> dict[str, Fraction]:
+        """Every parameter at a point.
+
+        Raises
+        ------
+        Violation
+            When one has a pole there, or is outside its domain.
+        """
+        model = self.lattice.slice.model
+        values = {name: Fraction(0) for name in model.free_lengths}
+        try:
+            values |= {n: e.evaluate(x, y) for n, e in self.lattice.slice.parameters.items()}
+        except PoleError as error:
+            raise Violation(str(error)) from error
+        if (name := not_positive(model, values)) is not None:
+            raise Violation(f"{name} is {'not positive' if name in model.positive else 'negative'}")
+        for cone in self.form.cones:
+            if evaluated(cone.pull, values) < 0:
+                raise Violation(
+                    f"stiffness times free length of the spring {cone.name} is negative"
+                )
+        return values
 
     def same(self, one: Zero, two: Zero) -> bool:
         """Whether a solution lies where another one is alone.
@@ -222,9 +253,7 @@ def _ahead(field: BallEquations, box: Sequence[arb]) -> Sequence[arb]:
     return field(box).conditions[: len(field.sides)]
 
 
-def _field(
-    form: Form, values: Mapping[str, arb], count: Count | None, side: Sides
-) -> BallEquations:
+def _field(form: Form, values: Values, count: Count | None, side: Sides) -> BallEquations:
     """The equations with what is positive at the solutions that are counted, and at no others, if a
     count is given.
     """
@@ -244,18 +273,14 @@ def _counted(field: BallEquations, found: Sequence[Zero], count: Count) -> list[
     Unproved
         When a condition may be zero at one of them.
     """
-    kept = []
-    for zero in found:
-        conditions = field(zero.within).conditions
-        if any(c < 0 for c in conditions):
-            continue
-        if not all(c > 0 for c in conditions):
-            where = ", ".join(f"{x:.6g}" for x in zero.center)
-            raise Unproved(f"a condition may be zero at the solution near ({where})")
-        of_equations = not field.form.is_gradient and kind_of(count).is_of_stable
-        signs = "+" * field.form.conditions_for_stability if of_equations else zero.signs
-        kept.append(_apart(field, replace(zero, signs=signs)))
-    return kept
+    if not field.form.is_gradient and kind_of(count).is_of_stable:
+        found = [replace(zero, signs="+" * field.form.conditions_for_stability) for zero in found]
+    undecided = "a condition may be zero at the solution near ({})"
+    return [
+        _apart(field, zero)
+        for zero in found
+        if _are_positive(field(zero.within).conditions, undecided.format(in_words(zero.center)))
+    ]
 
 
 def _apart(field: BallEquations, zero: Zero) -> Zero:
@@ -287,46 +312,21 @@ def _with_signs(field: BallEquations, form: Form, found: Sequence[Zero]) -> list
     return kept
 
 
-def _is_in_domain(model: Model, name: str, value: Any) -> bool:
-    """Whether a parameter, a number or a ball, surely is what its kind asks for."""
-    return bool(
-        value > 0 if name in model.positive else value >= 0 if name in model.nonnegative else True
-    )
-
-
-def _values_at(slice: Slice, form: Form, x: Fraction, y: Fraction) -> dict[str, Fraction]:
-    """Every parameter at a point.
-
-    Raises
-    ------
-    Violation
-        When one has a pole there, or is outside its domain.
-    """
-    model = slice.model
-    values = {name: Fraction(0) for name in model.free_lengths}
-    try:
-        values |= {name: e.evaluate(x, y) for name, e in slice.parameters.items()}
-    except PoleError as error:
-        raise Violation(str(error)) from error
-    for name, value in values.items():
-        if not _is_in_domain(model, name, value):
-            raise Violation(f"{name} is {'not positive' if name in model.positive else 'negative'}")
-    for cone in form.cones:
-        if evaluated(cone.pull, values) < 0:
-            raise Violation(f"stiffness times free length of the spring {cone.name} is negative")
-    return values
-
-
 def _balls(values: Mapping[str, Fraction]) -> dict[str, arb]:
     return {name: ball_of(value) for name, value in values.items()}
 
 
-def _has_margins(field: BallEquations, zero: Zero, undecided: str) -> bool:
-    """Whether all conditions of a field hold at a solution."""
-    found = field(zero.within).conditions
-    if any(value < 0 for value in found):
+def _are_positive(values: Sequence[arb], undecided: str) -> bool:
+    """Whether all of some values are positive.
+
+    Raises
+    ------
+    Unproved
+        When one may be zero.
+    """
+    if any(value < 0 for value in values):
         return False
-    if all(value > 0 for value in found):
+    if all(value > 0 for value in values):
         return True
     raise Unproved(undecided)
 

@@ -87,35 +87,22 @@ def tested(function: Function, solution: Solution) -> Judgement | None:
         return Judgement(False)
     # next to an edge the image of a box may cross it: that of one twice as wide is narrowed until
     # it does not
-    wide = [2 * outer] * len(middle)
-    found = _image(function, middle, wide)
-    for _ in range(_NARROWINGS):
-        if found is None:
+    reach, is_alone = [2 * outer] * len(middle), False
+    for _ in range(2 * _NARROWINGS):
+        if (found := _image(function, middle, reach)) is None:
             return None
-        if all(abs(s) < w for s, w in zip(found[0], wide, strict=True)):
-            break
-        # all solutions of a box are in its image, so that one coordinate may narrow another one's
-        moved = [m + s for m, s in zip(middle, found[0], strict=True)]
-        boxes = [arb(m, w) for m, w in zip(middle, wide, strict=True)]
-        if not all(x.overlaps(box) for x, box in zip(moved, boxes, strict=True)):
-            return Judgement(False)
-        kept = [x.intersection(box) for x, box in zip(moved, boxes, strict=True)]
-        middle, wide = [x.mid() for x in kept], [2 * x.rad() for x in kept]
-        found = _image(function, middle, wide)
-    else:
-        return None
-    for _ in range(_NARROWINGS):
         steps, jacobian = found
         within = tuple(m + s for m, s in zip(middle, steps, strict=True))
-        away = [abs(x - c) for x, c in zip(within, given, strict=True)]
-        if any(d > radius for d in away):
+        is_alone = is_alone or all(abs(s) < r for s, r in zip(steps, reach, strict=True))
+        away = [abs(x - c) for x, c in zip(within, given, strict=True)] if is_alone else []
+        boxes = [arb(m, r) for m, r in zip(middle, reach, strict=True)]
+        # all solutions of a box are in its image, so that one coordinate may narrow another one's
+        if any(d > radius for d in away) or not all(map(arb.overlaps, within, boxes)):
             return Judgement(False)
-        if all(d < radius for d in away):
+        if is_alone and all(d < radius for d in away):
             return Judgement(True, within, jacobian)
-        middle = [x.mid() for x in within]
-        found = _image(function, middle, [x.rad() for x in within])
-        if found is None:
-            break
+        kept = list(map(arb.intersection, within, boxes))
+        middle, reach = [x.mid() for x in kept], [(2 - is_alone) * x.rad() for x in kept]
     return None
 
 

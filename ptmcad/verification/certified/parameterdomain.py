@@ -6,20 +6,23 @@ Guarantee: what is said to be proved of signs is; a ball has the values at all p
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Mapping
+from contextlib import suppress
+
 from flint import fmpq
 
 from ptmcad.errors import ExpressionError
 from ptmcad.model import Kind
 from ptmcad.question.slice import Slice
 from ptmcad.text.expressions import Expression, axis
-from ptmcad.text.flint_numbers import from_fraction
+from ptmcad.text.flint_numbers import interval_of
 from ptmcad.verification.claims import Claims
 from ptmcad.verification.coordinates import evaluated, monomials
 from ptmcad.verification.derivation import derivation_of
 from ptmcad.verification.normalform.waves import form_of
 from ptmcad.verification.parameterclaims import auxiliary, written
 from ptmcad.verification.report import Unchecked, Violation
-from ptmcad.verification.windowsigns import Sign, Window, has_no_pole, is_in_domain
+from ptmcad.verification.windowsigns import Sign, has_no_pole, is_in_domain
 
 
 def check_domain(claims: Claims) -> str:
@@ -34,25 +37,21 @@ def check_domain(claims: Claims) -> str:
     What was proved, and of which parameters it was not.
     """
     slice = claims.result.slice
-    window = [(from_fraction(a.low), from_fraction(a.high)) for a in slice.axes]
-    here, unchecked = (window[0], window[1]), []
-    asked = _expressions(slice)
-    for name, expression in asked.items():
-        pole = has_no_pole(expression, here)
-        if pole is Sign.WRONG:
-            raise Violation(f"{name} has a pole in the window")
-        sign = Sign.PROVED
-        kind = slice.model.kind(name)
-        if kind.is_positive or kind.may_vanish:
-            strict = kind.is_positive or (kind is Kind.BASE and bool(expression.numerator))
-            sign = is_in_domain(expression, here, strict)
-            if sign is Sign.WRONG:
-                raise Violation(
-                    f"{name} is {'not positive' if strict else 'negative'} somewhere in the window"
-                )
+    window = (interval_of(slice.axes[0]), interval_of(slice.axes[1]))
+    unchecked, asked = [], _expressions(slice)
+    for what, expression, strict in (*_of_parameters(slice, asked), *_of_polynomials(claims)):
+        pole = sign = Sign.UNCHECKED
+        if expression is not None:
+            pole = sign = has_no_pole(expression, window)
+            if pole is Sign.WRONG:
+                raise Violation(f"{what} has a pole in the window")
+            if strict is not None:
+                sign = is_in_domain(expression, window, strict)
+        if sign is Sign.WRONG:
+            how = "not positive" if strict else "negative"
+            raise Violation(f"{what} is {how} somewhere in the window")
         if Sign.UNCHECKED in (pole, sign):
-            unchecked.append(name)
-    unchecked += _undecided_polynomials(claims, here)
+            unchecked.append(what)
     if unchecked:
         return Unchecked(
             f"{', '.join(unchecked)}: of too high degree, or zero at a point where that could not be decided"
@@ -60,14 +59,25 @@ def check_domain(claims: Claims) -> str:
     return f"{len(asked)} parameters"
 
 
-def _undecided_polynomials(claims: Claims, window: Window) -> list[str]:
-    """The stiffnesses and free lengths written in springs of which it could not be decided that
-    they make sense.
+_Question = tuple[str, Expression | None, bool | None]
+"""Whether something, a function if it is not too long, is positive (True), or not negative (False);
+None where it only has to have no pole."""
+
+
+def _of_parameters(slice: Slice, asked: Mapping[str, Expression]) -> Iterator[_Question]:
+    for name, expression in asked.items():
+        kind = slice.model.kind(name)
+        strict = kind.is_positive or (kind is Kind.BASE and bool(expression.numerator))
+        yield name, expression, strict if kind.is_positive or kind.may_vanish else None
+
+
+def _of_polynomials(claims: Claims) -> Iterator[_Question]:
+    """Of the stiffnesses and free lengths written in springs.
 
     So of stiffness times free length where it pulls: if that is negative, a spring without length
     is a minimum that is not smooth, and is not counted.
     """
-    undecided, zero, slice = [], 0 * axis(0), claims.result.slice
+    zero, slice = 0 * axis(0), claims.result.slice
     model, true = slice.model, derivation_of(slice.model)
     known, names = (
         {name: zero for name in model.free_lengths} | dict(slice.parameters),
@@ -89,17 +99,10 @@ def _undecided_polynomials(claims: Claims, window: Window) -> list[str]:
             for c in form_of(slice).cones
         ]
     for what, p, variables, strict in asked:
-        try:
-            sign = is_in_domain(evaluated(p, known, variables) + zero, window, strict)
-        except ExpressionError:  # too long to be multiplied out
-            sign = Sign.UNCHECKED
-        if sign is Sign.WRONG:
-            raise Violation(
-                f"{what} is {'not positive' if strict else 'negative'} somewhere in the window"
-            )
-        if sign is Sign.UNCHECKED:
-            undecided.append(what)
-    return undecided
+        expression = None
+        with suppress(ExpressionError):  # too long to be multiplied out
+            expression = evaluated(p, known, variables) + zero
+        yield what, expression, strict
 
 
 def _expressions(slice: Slice) -> dict[str, Expression]:

@@ -18,18 +18,18 @@ from __future__ import annotations
 
 import random
 from bisect import bisect_right
-from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from collections.abc import Iterator
 from fractions import Fraction
 from itertools import accumulate, product
 from math import ceil, isqrt
+from typing import NamedTuple
 
 from ptmcad.cover.rectangles import Rectangle
 from ptmcad.verification.certified.cellsamples import HOPELESS
 from ptmcad.verification.certified.counted import CountedPoint, differs, stored
 from ptmcad.verification.certified.coverclaims import CertifiedClaims
 from ptmcad.verification.normalform.boxes import Unproved
-from ptmcad.verification.report import Unchecked, Violation
+from ptmcad.verification.report import Unchecked, Violation, Within
 
 FIRST_BOX_PARTS = 512
 """The first box tried has at most this part of the window's width on each side of its middle."""
@@ -50,8 +50,7 @@ lattice steps times the number of squares side by side, in which squares begin a
 numbers."""
 
 
-@dataclass(frozen=True, slots=True)
-class SampleBox:
+class _SampleBox(NamedTuple):
     """A box in lattice steps, within one cell: its middle and half its width (0 where there is no
     room).
     """
@@ -66,7 +65,7 @@ def check_boxes(
     claims: CertifiedClaims,
     seed: str,
     number: int,
-    report: Callable[[int, int], None] = lambda _done, _total: None,
+    report: Within = lambda *_: None,
 ) -> str:
     """Try so many random boxes, and more points; what was found, and for how many points nothing
     was proved.
@@ -87,28 +86,23 @@ def check_boxes(
     far = min(len(by_area), number - near)
     proved = points = missing = 0
     area = Fraction(0)
-    tried = [(box, k < far) for k, box in enumerate(by_area)] + [
-        (p, k < near) for k, p in enumerate(beside)
-    ]
-    for k, (box, with_box) in enumerate(tried):
-        report(k, len(tried))
+    for k, box in enumerate([*by_area, *beside]):
+        report(k, len(by_area) + len(beside))
         if not points and missing == HOPELESS:
             return Unchecked(f"none of the first {missing} points could be decided; seed {seed}")
         there = check_point(claims, box.cell, box.u, box.v)
-        if there is not None:
-            points += 1
-        if not with_box:
+        points += there is not None
+        if not (k < far or 0 <= k - len(by_area) < near):
             missing += there is None
             continue
-        half = None if there is None else _constant_over(claims, box, there)
-        if half is not None:
+        half = Fraction(0) if there is None else _constant_over(claims, box, there)
+        if half:
             proved += 1
             area += (2 * half / claims.sweep.steps) ** 2
             continue
         # where constancy is not proved, a change of the count would show in a corner
-        for side1 in (-1, 1):
-            for side2 in (-1, 1):
-                check_point(claims, box.cell, box.u + side1 * box.half, box.v + side2 * box.half)
+        for one, two in product((-1, 1), repeat=2):
+            check_point(claims, box.cell, box.u + one * box.half, box.v + two * box.half)
         missing += 1
     text = f"{proved} boxes, {100 * float(area):.2g} % of the window, {points} points; seed {seed}"
     if missing:
@@ -125,7 +119,7 @@ def _side(number: int) -> int:
 
 def _by_area(
     claims: CertifiedClaims, rng: random.Random, number: int
-) -> tuple[list[SampleBox], int]:
+) -> tuple[list[_SampleBox], int]:
     """A point in each square of the grid, in random order; and the number of squares in which none
     was met with.
     """
@@ -145,7 +139,7 @@ def _by_area(
     return found, without
 
 
-def _beside(claims: CertifiedClaims, rng: random.Random, number: int) -> list[SampleBox]:
+def _beside(claims: CertifiedClaims, rng: random.Random, number: int) -> list[_SampleBox]:
     """Points beside rectangles, as many as boxes: from one square of the grid after the other, in
     random order.
     """
@@ -156,7 +150,7 @@ def _beside(claims: CertifiedClaims, rng: random.Random, number: int) -> list[Sa
         k: list(accumulate(right - left + top - bottom for left, right, bottom, top in edges[k]))
         for k in order
     }
-    found: list[SampleBox] = []
+    found: list[_SampleBox] = []
     while order and len(found) < number:
         for k in list(order):
             if len(found) == number:
@@ -213,7 +207,7 @@ def _uniform(rng: random.Random) -> Fraction:
     return Fraction(2 * rng.randrange(MIN_WINDOW_PARTS) + 1, 2 * MIN_WINDOW_PARTS)
 
 
-def _free(claims: CertifiedClaims, u: Fraction, v: Fraction) -> SampleBox | None:
+def _free(claims: CertifiedClaims, u: Fraction, v: Fraction) -> _SampleBox | None:
     """The box around a point, or one next to it that is shorter to write; None when it is not in a
     cell.
     """
@@ -223,7 +217,7 @@ def _free(claims: CertifiedClaims, u: Fraction, v: Fraction) -> SampleBox | None
     if (cell := claims.cell_at(u, v)) is None:
         return None
     half = claims.room(u, v, Fraction(steps, FIRST_BOX_PARTS), Fraction(steps, MIN_WINDOW_PARTS))
-    return SampleBox(u, v, half, cell)
+    return _SampleBox(u, v, half, cell)
 
 
 def check_point(
@@ -258,31 +252,20 @@ def check_point(
     return there
 
 
-def _constant_over(claims: CertifiedClaims, box: SampleBox, there: CountedPoint) -> Fraction | None:
-    """Half the width of the box over which the counts were proved; None when none was small enough."""
+def _constant_over(claims: CertifiedClaims, box: _SampleBox, there: CountedPoint) -> Fraction:
+    """Half the width of the box over which the cell's counts are proved; 0 when none was small
+    enough.
+    """
     half = box.half
-    for _ in range(ATTEMPTS):
-        if half == 0:
-            return None
+    for _ in range(ATTEMPTS if half else 0):
         try:
-            _prove(claims, box, half, there)
-        except Unproved:
+            u, v = ((at - half, at + half) for at in (box.u, box.v))
+            true = claims.counting.over(u, v, there)
+        except Unproved:  # the box is too large, or the counts change in it
             half /= 4
             continue
+        assert not differs(claims.result.cells[box.cell], true), (
+            "the box holds its middle, whose counts are the cell's"
+        )
         return half
-    return None
-
-
-def _prove(claims: CertifiedClaims, box: SampleBox, half: Fraction, there: CountedPoint) -> None:
-    """Prove the cell's counts for every point of the box.
-
-    Raises
-    ------
-    Unproved
-        When the box is too large, or the counts change in it.
-    """
-    u, v = (box.u - half, box.u + half), (box.v - half, box.v + half)
-    true = claims.counting.over(u, v, there)
-    assert not differs(claims.result.cells[box.cell], true), (
-        "the box holds its middle, whose counts are the cell's"
-    )
+    return Fraction(0)

@@ -101,13 +101,23 @@ def outward(a: float, b: float) -> Any:
     return low, high
 
 
+@inlined
+def _hull(p: float, q: float, r: float, s: float) -> Any:
+    return outward(min(min(p, q), min(r, s)), max(max(p, q), max(r, s)))
+
+
+@inlined
+def _nearest(a: float, b: float) -> float:
+    """The least absolute value in [a, b]."""
+    return 0.0 if a <= 0.0 <= b else min(abs(a), abs(b))
+
+
 @compiled
 def times(a: float, b: float, c: float, d: float) -> Any:
     """[a, b] [c, d]"""
     if a == -inf or c == -inf:
         return -inf, inf
-    p, q, r, s = a * c, a * d, b * c, b * d
-    return outward(min(min(p, q), min(r, s)), max(max(p, q), max(r, s)))
+    return _hull(a * c, a * d, b * c, b * d)
 
 
 @compiled
@@ -125,8 +135,7 @@ def over(a: float, b: float, c: float, d: float) -> Any:
     """[a, b]/[c, d]; the whole line where the divisor may be zero."""
     if a == -inf or c == -inf or c <= 0.0 <= d:
         return -inf, inf
-    p, q, r, s = a / c, a / d, b / c, b / d
-    return outward(min(min(p, q), min(r, s)), max(max(p, q), max(r, s)))
+    return _hull(a / c, a / d, b / c, b / d)
 
 
 @compiled
@@ -149,9 +158,10 @@ def wave(a: float, b: float, top: float) -> Any:
 @compiled
 def reach(a: float, b: float, c: float, d: float) -> Any:
     """The least and the largest length of a vector in [a, b] x [c, d]."""
-    across = 0.0 if a <= 0.0 <= b else min(abs(a), abs(b))
-    up = 0.0 if c <= 0.0 <= d else min(abs(c), abs(d))
-    low, high = hypot(across, up), hypot(max(abs(a), abs(b)), max(abs(c), abs(d)))
+    low, high = (
+        hypot(_nearest(a, b), _nearest(c, d)),
+        hypot(max(abs(a), abs(b)), max(abs(c), abs(d))),
+    )
     # the C library's hypot is wrong by one unit in the last place at most
     return low * (1 - 2.0**-50), high * (1 + 2.0**-50) + _MIN_ERROR
 
@@ -161,7 +171,7 @@ def direction(a: float, b: float, c: float, d: float) -> Any:
     """The first coordinate of the unit vectors along what is in [a, b] x [c, d]."""
     if a == -inf or c == -inf or (a <= 0.0 <= b and c <= 0.0 <= d):
         return -1.0, 1.0
-    least, most = 0.0 if c <= 0.0 <= d else min(abs(c), abs(d)), max(abs(c), abs(d))
+    least, most = _nearest(c, d), max(abs(c), abs(d))
     # x/|(x, y)| grows with x; it grows with |y| where x is negative, and falls where it is positive
     low, high = a / hypot(a, most if a >= 0.0 else least), b / hypot(b, least if b >= 0.0 else most)
     if not (low >= -2.0 and high <= 2.0):

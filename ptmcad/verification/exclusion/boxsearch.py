@@ -42,14 +42,12 @@ _MIN_SHARE = 0.1
 
 
 @compiled
-def look(
-    system: Any, tape: Any, pieces: Any, boxes: Any, outcome: Any, rest: Any, told: Any
-) -> None:
+def look(system: Any, pieces: Any, boxes: Any, outcome: Any, rest: Any, told: Any) -> None:
     """Treat boxes one by one.
 
     Parameters
     ----------
-    system : `ptmcad.verification.exclusion.criticalsystems.Compiled`.
+    system : `ptmcad.verification.exclusion.systemtapes.Compiled`.
     boxes : (number, variables, 2), made smaller.
     outcome : (number,), as above.
     rest : (number, variables, 2), the second halves of those that are `HALVED`; `boxes` has the
@@ -57,43 +55,42 @@ def look(
     told : (formulas), those that are zero and then those that are not negative: how many boxes each
         of them has excluded is added.
     """
-    forms, rows, solved_for = _room(system, tape, boxes.shape[1])
+    room = _room(system, boxes.shape[1])
     for n in range(len(boxes)):
         box = boxes[n]
-        outcome[n] = _look_at(system, tape, pieces, box, forms, rows, solved_for, told)
+        outcome[n], k, half = _treated(system, pieces, box, room, told)
         if outcome[n] == HALVED:
-            k, half = _halving(system, forms, box)
-            if k < 0:
-                outcome[n] = STUCK
-                continue
             rest[n] = box
             rest[n, k, 0] = half
             box[k, 1] = half
 
 
 @compiled
-def _room(system: Any, tape: Any, nv: int) -> Any:
+def _room(system: Any, nv: int) -> Any:
     """Arrays for the forms of all operations, the rows of those that are asked for, and what these
     are solved for.
     """
     number = len(system.zero) + len(system.not_negative)
     return (
-        np.empty((len(tape.code), WIDTH)),
+        np.empty((len(system.tape.code), WIDTH)),
         np.empty((number, nv + 2)),
         np.empty(number, dtype=np.int64),
     )
 
 
 @compiled
-def _halving(system: Any, forms: Any, box: Any) -> Any:
-    """The variable along which a box is halved, -1 for none, and where."""
-    k = _widest(system, forms, box)
+def _treated(system: Any, pieces: Any, box: Any, room: Any, told: Any) -> Any:
+    """What becomes of one box; and if it is halved, the variable along which it is, and where."""
+    outcome = _look_at(system, pieces, box, room, told)
+    if outcome != HALVED:
+        return outcome, -1, 0.0
+    k = _widest(system, room[0], box)
     half = 0.5 * (box[k, 0] + box[k, 1])
-    return k if k >= 0 and box[k, 0] < half < box[k, 1] else -1, half
+    return HALVED if k >= 0 and box[k, 0] < half < box[k, 1] else STUCK, k, half
 
 
 @compiled
-def isolate(system: Any, tape: Any, pieces: Any, boxes: Any, budget: int) -> int:
+def isolate(system: Any, pieces: Any, boxes: Any, budget: int) -> int:
     """Look at one box and its parts, the youngest first, until none waits or so many were looked
     at.
 
@@ -107,28 +104,21 @@ def isolate(system: Any, tape: Any, pieces: Any, boxes: Any, budget: int) -> int
     The number of boxes that are left. All solutions in the box are in them.
     """
     most, nv = boxes.shape[0], boxes.shape[1]
-    forms, rows, solved_for = _room(system, tape, nv)
-    told = np.zeros(len(rows))
-    box, stuck, waiting = (
-        np.empty((nv, 2)),
-        0,
-        1,
-    )  # those that are stuck come first, then those that wait
+    room = _room(system, nv)
+    told, box = np.zeros(len(room[1])), np.empty((nv, 2))
+    stuck, waiting = 0, 1  # those that are stuck come first, then those that wait
     for _ in range(budget):
         if waiting == 0 or stuck + waiting == most:
             break
         waiting -= 1
         box[:] = boxes[stuck + waiting]
-        outcome = _look_at(system, tape, pieces, box, forms, rows, solved_for, told)
-        if outcome == GONE:
-            continue
-        k, half = _halving(system, forms, box) if outcome == HALVED else (-1, 0.0)
-        if k >= 0:
+        outcome, k, half = _treated(system, pieces, box, room, told)
+        if outcome == HALVED:
             for side in range(2):
                 boxes[stuck + waiting] = box
                 boxes[stuck + waiting, k, 1 - side] = half
                 waiting += 1
-        else:
+        elif outcome == STUCK:
             boxes[stuck + waiting] = boxes[stuck]
             boxes[stuck] = box
             stuck += 1
@@ -136,11 +126,10 @@ def isolate(system: Any, tape: Any, pieces: Any, boxes: Any, budget: int) -> int
 
 
 @compiled
-def _look_at(
-    system: Any, tape: Any, pieces: Any, box: Any, forms: Any, rows: Any, solved_for: Any, told: Any
-) -> int:
-    """What becomes of one box."""
-    nv = box.shape[0]
+def _look_at(system: Any, pieces: Any, box: Any, room: Any, told: Any) -> int:
+    """What becomes of one box, if it can be halved."""
+    forms, rows, solved_for = room
+    nv, tape = box.shape[0], system.tape
     before = np.empty((nv, 2))
     for _ in range(_ROUNDS):
         evaluate(tape, box, forms, 0, system.first)

@@ -8,18 +8,16 @@ is the projection of a solution of one of the systems, in the box of its start (
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Iterator, Sequence
 from fractions import Fraction
 from itertools import combinations
 from math import inf, pi
-from typing import Any, NamedTuple
 
 import numpy as np
 
 from ptmcad.errors import ExpressionError
 from ptmcad.verification.coordinates import evaluated
-from ptmcad.verification.exclusion.forms import IntervalTape, tape_of
+from ptmcad.verification.exclusion.systemtapes import CriticalSystem
 from ptmcad.verification.kinds import kind_of
 from ptmcad.verification.normalform.boxes import Floats
 from ptmcad.verification.normalform.lattice import Range, SliceLattice
@@ -27,122 +25,12 @@ from ptmcad.verification.normalform.modelequations import Equations, Pair
 from ptmcad.verification.normalform.operations import Formulas
 from ptmcad.verification.normalform.unknownbounds import half_widths
 from ptmcad.verification.normalform.waves import Waves, form_of, sides
+from ptmcad.verification.planecurves import PLANE, polynomial
 
 SHORT_SHARE = 16
 """A spring is short, for total counts, if its length is less than this part of the sum of its
 vector's factors.
 """
-
-
-class Compiled(NamedTuple):
-    """What is zero at critical points, and what is not negative there, by the numbers of values of
-    a tape.
-
-    Attributes
-    ----------
-    early : how many of ``zero`` are known after the first operations, ``first`` many.
-    measured : those by which it is chosen what is halved.
-    units : of each variable a length that is large.
-    least : of each variable; a box that is narrower in all of them is not halved.
-    halved : the first variable along which boxes are halved: 0, or 2 where the window's are only
-        looked at.
-    """
-
-    zero: Any
-    not_negative: Any
-    measured: Any
-    early: int
-    first: int
-    units: Any
-    least: Any
-    halved: int
-
-
-@dataclass(frozen=True, slots=True)
-class CriticalSystem:
-    """A system in lattice steps of both axes and in its unknowns.
-
-    Attributes
-    ----------
-    formulas : which those of ``zeros`` and ``signs`` are of, and which the tape has at ``zero`` and
-        ``not_negative``.
-    early, first : as above.
-    start : (variables, 2), a box that has all solutions over the window.
-    """
-
-    name: str
-    formulas: Formulas
-    zeros: tuple[int, ...]
-    signs: tuple[int, ...]
-    tape: IntervalTape
-    zero: tuple[int, ...]
-    not_negative: tuple[int, ...]
-    early: int
-    first: int
-    start: Any
-
-    def within(self, halves: Floats) -> CriticalSystem:
-        """The same with its first unknowns in other ranges, of which half the widths are given."""
-        start = self.start.copy()
-        start[2 : 2 + len(halves)] = [(-half, half) for half in halves]
-        return replace(self, start=start)
-
-    @property
-    def measured(self) -> int:
-        """How many of the formulas that are zero tell what is halved; over a place one less."""
-        return len(self.start) - 1
-
-    def with_some(self, chosen: Any) -> CriticalSystem:
-        """The same without some of its formulas, of which none is claimed then.
-
-        Parameters
-        ----------
-        chosen : for each formula that is zero, and then for each that is not negative, whether it
-            is kept; the first ones are.
-        """
-        chosen = chosen | (np.arange(len(chosen)) < max(self.early, self.measured))
-        zeros, signs = (
-            [n for n, kept in zip(some, which, strict=True) if kept]
-            for some, which in (
-                (self.zeros, chosen[: len(self.zeros)]),
-                (self.signs, chosen[len(self.zeros) :]),
-            )
-        )
-        return _of_formulas(self.name, self.formulas, zeros, signs, self.early, self.start)
-
-    def compiled(self, smallest: float, over_place: bool = False) -> Compiled:
-        """In arrays, to be looked at over boxes of the window that are wider than a share of it.
-
-        Parameters
-        ----------
-        over_place : of one box of the window, and boxes of the unknowns that are wider than a share
-            of all.
-        """
-        units = self.start[:, 1] - self.start[:, 0]
-        least = np.where((np.arange(len(units)) < 2) != over_place, smallest * units, np.inf)
-        zero, not_negative = (
-            np.array(some, dtype=np.int64) for some in (self.zero, self.not_negative)
-        )
-        measured = zero[: self.measured - over_place]
-        return Compiled(
-            zero, not_negative, measured, self.early, self.first, units, least, 2 * over_place
-        )
-
-
-def _of_formulas(
-    name: str,
-    formulas: Formulas,
-    zeros: Sequence[int],
-    signs: Sequence[int],
-    early: int,
-    start: Any,
-) -> CriticalSystem:
-    """That of some formulas, of which the first ones are evaluated before all others."""
-    tape, first, places = tape_of(formulas, zeros[:early], [*zeros[early:], *signs])
-    zero, not_negative = places[: len(zeros)], places[len(zeros) :]
-    return CriticalSystem(
-        name, formulas, (*zeros,), (*signs,), tape, (*zero,), (*not_negative,), early, first, start
-    )
 
 
 _ANGLE = (-pi - 1e-6, pi + 1e-6)
@@ -168,8 +56,7 @@ def solutions_of(lattice: SliceLattice, halves: Floats | None) -> list[CriticalS
 
     Parameters
     ----------
-    halves : as `halves_over` has them; None where there are none, and unknowns may be anything
-        until they are `within` others.
+    halves : as `halves_over` has them; None where there are none, and unknowns may be anything.
     """
     return list(_Systems(lattice, halves or (inf,) * form_of(lattice.slice).size).solutions())
 
@@ -192,25 +79,16 @@ def halves_over(lattice: SliceLattice, u: Range, v: Range) -> Floats:
 def window_equations(lattice: SliceLattice) -> Equations:
     """The formulas of a map's equations, over the window in lattice steps and its unknowns."""
     f, slice = Formulas(), lattice.slice
-    axes = [
-        f.add(
-            f.number(a.low),
-            f.multiply(f.variable(k), f.number((a.high - a.low) / lattice.steps)),
+    axes = {
+        name: f.add(f.number(axis.low), f.multiply(f.variable(k), f.number(side)))
+        for k, (name, axis, side) in enumerate(
+            zip(PLANE.names(), slice.axes, lattice.square, strict=True)
         )
-        for k, a in enumerate(slice.axes)
-    ]
-
-    def polynomial(terms: Iterable[tuple[int, int, Fraction]]) -> int:
-        return f.sum(
-            f.multiply(f.number(c), f.multiply(f.power(axes[0], i), f.power(axes[1], j)))
-            for i, j, c in terms
-        )
-
-    parameters = {n: f.number(0) for n in slice.model.free_lengths}
-    parameters |= {
-        n: f.divide(polynomial(e.numerator), polynomial(e.denominator))
-        for n, e in slice.parameters.items()
     }
+    parameters = {n: f.number(0) for n in slice.model.free_lengths}
+    for n, e in slice.parameters.items():
+        parts = (f.polynomial(polynomial(terms), axes) for terms in (e.numerator, e.denominator))
+        parameters[n] = f.divide(*parts)
     return Equations(form_of(slice), f, parameters, slice.model.positive)
 
 
@@ -308,10 +186,8 @@ class _Systems:
         semidefinite.
         """
         n, f = len(rows), self.model.list
-        chosen = [c for size in range(1, max(n, 2)) for c in combinations(range(n), size)]
-        return (
-            [f.determinant([[rows[i][j] for j in c] for i in c]) for c in chosen] if n > 1 else []
-        )
+        chosen = [c for size in range(1, n) for c in combinations(range(n), size)]
+        return [f.determinant([[rows[i][j] for j in c] for i in c]) for c in chosen]
 
     def _short(self, k: int) -> int:
         return self.model.list.number(Fraction(float(self._reach(k) / SHORT_SHARE)))
@@ -417,11 +293,8 @@ class _Systems:
             ranges += [(-half, half) for half in self._halves] + [_ANGLE] * (
                 number - self.form.size
             )
-        return _of_formulas(
-            name + self.where,
-            self.model.list,
-            [*first, *zero],
-            not_negative,
-            len(first),
-            np.array(ranges),
+        zeros, start = (*first, *zero), np.array(ranges)
+        formulas = self.model.list
+        return CriticalSystem(
+            name + self.where, formulas, zeros, (*not_negative,), len(first), start
         )

@@ -122,12 +122,10 @@ def evaluate(tape: Any, box: Any, forms: Any, start: int, end: int) -> None:
         code, i, j = tape.code[n], tape.first[n], tape.second[n]
         if code <= VARIABLE:
             a, b = (tape.low[n], tape.high[n]) if code == CONSTANT else (box[i, 0], box[i, 1])
-            middle = 0.5 * (a + b)
-            wide = max(b - middle, middle - a) * (1 + 2.0**-50)
-            for k in range(MAX_VARIABLES):
-                forms[n, k] = 0.0
-            forms[n, CENTER], forms[n, ERROR], forms[n, LOW], forms[n, HIGH] = middle, 0.0, a, b
-            forms[n, i if code == VARIABLE else ERROR] = wide
+            forms[n, LOW], forms[n, HIGH] = a, b
+            _flat(forms, n)
+            if code == VARIABLE:
+                forms[n, i], forms[n, ERROR] = forms[n, ERROR], 0.0
             continue
         a, b, c, d = forms[i, LOW], forms[i, HIGH], forms[j, LOW], forms[j, HIGH]
         a, b = operation(code, a, b, c, d)

@@ -15,9 +15,10 @@ from functools import cached_property
 import numpy as np
 
 from ptmcad.verification.exclusion.boxsearch import isolate
-from ptmcad.verification.exclusion.criticalsystems import CriticalSystem, halves_over, solutions_of
+from ptmcad.verification.exclusion.criticalsystems import halves_over, solutions_of
 from ptmcad.verification.exclusion.forms import enclosing
 from ptmcad.verification.exclusion.pieces import Pieces, no_pieces
+from ptmcad.verification.exclusion.systemtapes import CriticalSystem
 from ptmcad.verification.normalform.boxes import Box, Floats, Unproved
 from ptmcad.verification.normalform.lattice import Range, SliceLattice
 
@@ -61,32 +62,29 @@ class SolutionPlaces:
         Unproved
             When no bound of a real unknown is proved.
         """
-        systems = self._systems
-        if self._halves is None:
-            halves = halves_over(self._lattice, u, v)
-            systems = [system.within(halves) for system in systems]
+        halves = self._halves or halves_over(self._lattice, u, v)
         share = max(high - low for low, high in (u, v)) / self._lattice.steps
         smallest = max(MIN_WIDTH, PER_SHARE * float(share))
         rectangle = [(enclosing(low)[0], enclosing(high)[1]) for low, high in (u, v)]
         pieces = no_pieces(self._lattice.steps)
-        return [Isolation(system, rectangle, smallest, pieces) for system in systems]
+        return [Isolation(system, halves, rectangle, smallest, pieces) for system in self._systems]
 
 
 @dataclass(frozen=True)
 class Isolation:
     """The boxes of one system's solutions over a rectangle, which are looked for when they are
     asked for.
+
+    Attributes
+    ----------
+    whole : half the width of all configurations, in each unknown.
     """
 
     system: CriticalSystem
+    whole: Floats
     rectangle: Sequence[tuple[float, float]]
     smallest: float
     pieces: Pieces
-
-    @property
-    def whole(self) -> Floats:
-        """Half the width of all configurations, in each unknown."""
-        return tuple(self.system.start[2:, 1].tolist())
 
     def __iter__(self) -> Iterator[Box]:
         return iter(self._boxes)
@@ -94,15 +92,9 @@ class Isolation:
     @cached_property
     def _boxes(self) -> list[Box]:
         boxes = np.empty((MAX_LEFT, *self.system.start.shape))
-        boxes[0] = self.system.start
-        boxes[0, :2] = self.rectangle
-        left = isolate(
-            self.system.compiled(self.smallest, over_place=True),
-            self.system.tape,
-            self.pieces,
-            boxes,
-            BUDGET,
-        )
+        boxes[0] = [*self.rectangle, *((-half, half) for half in self.whole)]
+        compiled = self.system.compiled(self.smallest, self.whole)
+        left = isolate(compiled, self.pieces, boxes, BUDGET)
         return [_box(rows, self.whole) for rows in boxes[:left, 2:].tolist()]
 
 

@@ -12,8 +12,8 @@ from typing import Any
 import numpy as np
 
 from ptmcad.verification.exclusion.boxsearch import GONE, HALVED, STUCK, look, spread
-from ptmcad.verification.exclusion.criticalsystems import CriticalSystem
 from ptmcad.verification.exclusion.pieces import Pieces
+from ptmcad.verification.exclusion.systemtapes import CriticalSystem
 
 MAX_WAITING = 1_000_000
 """Boxes: with more of them the youngest are looked at first."""
@@ -84,7 +84,7 @@ class _Choice:
         self._all, self._pieces, self._smallest = system, pieces, smallest
         self._some, self._chosen = (
             system,
-            np.ones(len(system.zero) + len(system.not_negative), dtype=bool),
+            np.ones(len(system.zeros) + len(system.signs), dtype=bool),
         )
         self._told, self._looked = np.zeros(len(self._chosen)), 0
 
@@ -114,10 +114,8 @@ class _Choice:
         self, system: CriticalSystem, boxes: Any, outcome: Any, other: Any, told: Any = None
     ) -> None:
         if told is None:
-            told = np.zeros(len(system.zero) + len(system.not_negative))
-        look(
-            system.compiled(self._smallest), system.tape, self._pieces, boxes, outcome, other, told
-        )
+            told = np.zeros(len(system.zeros) + len(system.signs))
+        look(system.compiled(self._smallest), self._pieces, boxes, outcome, other, told)
 
 
 def _volumes(boxes: Any) -> Any:

@@ -6,7 +6,7 @@ so in spite of the floats' rounding.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from math import pi
 
@@ -44,6 +44,11 @@ class Zero:
     def within(self) -> tuple[arb, ...]:
         """Balls of the unknowns."""
         return tuple(map(arb, self.center, self.radii))
+
+
+def in_words(center: Iterable[float]) -> str:
+    """A point in few digits."""
+    return ", ".join(f"{x:.6g}" for x in center)
 
 
 def halves(box: Box, order: Sequence[int], smallest: Sequence[float]) -> tuple[Box, Box] | None:

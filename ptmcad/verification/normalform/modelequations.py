@@ -14,7 +14,6 @@ from typing import NamedTuple
 
 from flint import fmpq_mpoly
 
-from ptmcad.text.flint_numbers import to_fraction
 from ptmcad.verification.coordinates import monomials
 from ptmcad.verification.normalform.operations import Formulas
 from ptmcad.verification.normalform.springlines import SpringLine
@@ -114,14 +113,7 @@ class Equations:
 
     def polynomial(self, p: fmpq_mpoly) -> int:
         """A polynomial in the parameters."""
-        f = self.list
-        return f.sum(
-            f.multiply(
-                f.number(to_fraction(c)),
-                f.product(self.parameters[n] for n, power in names for _ in range(power)),
-            )
-            for c, names in monomials(p)
-        )
+        return self.list.polynomial(p, self.parameters)
 
     def waves(self, row: Waves) -> int:
         """A sum of waves."""

@@ -6,9 +6,14 @@ Guarantee: exact; equal operations are written once, and those of rational numbe
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from fractions import Fraction
 from typing import Any
+
+from flint import fmpq_mpoly
+
+from ptmcad.text.flint_numbers import to_fraction
+from ptmcad.verification.coordinates import monomials
 
 (
     CONSTANT,
@@ -141,6 +146,16 @@ class Formulas:
         for value, exponent in powers.items():
             total = self.multiply(total, self.power(value, exponent))
         return total
+
+    def polynomial(self, p: fmpq_mpoly, values: Mapping[str, int]) -> int:
+        """The value of a polynomial, with values of its variables."""
+        return self.sum(
+            self.multiply(
+                self.number(to_fraction(c)),
+                self.product(values[name] for name, power in names for _ in range(power)),
+            )
+            for c, names in monomials(p)
+        )
 
     def power(self, a: int, exponent: int) -> int:
         """A power with a whole exponent that is not negative."""

@@ -16,7 +16,7 @@ from flint import fmpq, fmpq_mpoly, fmpq_mpoly_ctx
 
 from ptmcad.question.slice import Axis
 from ptmcad.text.expressions import Expression, constant
-from ptmcad.text.flint_numbers import from_fraction
+from ptmcad.text.flint_numbers import from_fraction, interval_of
 from ptmcad.verification.coordinates import evaluated
 from ptmcad.verification.windowsigns import Sign, Window, is_in_domain
 
@@ -144,8 +144,7 @@ class Parameters:
     ):
         self.context, known = context, dict(values)
         self.values = [known.get(name, constant(0)) for name in context.names()]
-        across, up = ((from_fraction(axis.low), from_fraction(axis.high)) for axis in axes)
-        self.window: Window = (across, up)
+        self.window: Window = (interval_of(axes[0]), interval_of(axes[1]))
 
     def valued(self, f: Coordinate) -> dict[Wave, fmpq_mpoly]:
         """The same at every point of the slice, with numbers in place of parameters, and one name

@@ -16,7 +16,7 @@ second engine evaluates by Horner's rule on unbounded intervals.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import combinations, product
 from math import comb, inf, nextafter
@@ -81,6 +81,20 @@ class _RangeChart:
                 term = term * (angle.sin() if sine else angle.cos())
             total[*powers] = total.get((*powers,), _ZERO) + term
         return total
+
+    def is_all(self, holds: Callable[[_RangeChart], bool], parts: int) -> bool:
+        """Whether something holds in all parts of the chart, which is halved into so many at most."""
+        waiting, treated = [self], 0
+        while waiting:
+            part = waiting.pop()
+            treated += 1
+            if holds(part):
+                continue
+            halves = None if treated + len(waiting) >= parts else part.halves(self)
+            if halves is None:
+                return False
+            waiting += halves
+        return True
 
     def halves(self, whole: _RangeChart) -> tuple[_RangeChart, _RangeChart] | None:
         """Two charts, halved in the factor that is largest as a share of the whole one's; None
@@ -186,23 +200,21 @@ class _Bounds:
         )
         variables = tuple(k if half is None else None for k, half in enumerate(self.found))
         whole = _RangeChart(factors, variables, (1,) * len(factors), 0)
-        waiting, most = [whole], [arb(0)] * len(chosen)
-        treated = 0
-        while waiting:
-            part = waiting.pop()
-            treated += 1
+        if self._linear(whole, chosen) is None:
+            return None
+        found: list[list[arb]] = []
+
+        def is_bounded(part: _RangeChart) -> bool:
             linear = self._linear(part, chosen)
-            if linear is None:
-                return None
-            bounds = bounds_of(*linear)
-            if bounds is not None:
-                most = list(map(max, most, bounds))
-                continue
-            halves = None if treated + len(waiting) >= MAX_PARTS else part.halves(whole)
-            if halves is None:
-                return None
-            waiting += halves
-        return {k: nextafter(float(bound), inf) for k, bound in zip(chosen, most, strict=True)}
+            bounds = None if linear is None else bounds_of(*linear)
+            found.extend([] if bounds is None else [bounds])
+            return bounds is not None
+
+        if not whole.is_all(is_bounded, MAX_PARTS):
+            return None
+        return {
+            k: nextafter(float(max(some)), inf) for k, *some in zip(chosen, *found, strict=True)
+        }
 
     def _linear(self, chart: _RangeChart, chosen: Sequence[int]) -> _Linear | None:
         """The equations of some unknowns; None where other unknowns without a bound, or squares of
@@ -264,23 +276,17 @@ class _Bounds:
 
     def _is_empty(self, chart: _RangeChart, bound: arb, parts: int) -> bool:
         """Whether no solution has the leading number at the bound or beyond."""
-        waiting, treated = [chart], 0
-        while waiting:
-            part = waiting.pop()
-            treated += 1
-            if any(
+
+        def has_none(part: _RangeChart) -> bool:
+            return any(
                 _is_positive(part.monomials(f), part.lead, bound, -1) for f in self.inequalities
             ) or any(
                 _is_positive(terms, part.lead, bound, sign)
                 for terms in (e.monomials(part) for e in self.equations)
                 for sign in (1, -1)
-            ):
-                continue
-            halves = None if treated + len(waiting) >= parts else part.halves(chart)
-            if halves is None:
-                return False
-            waiting += halves
-        return True
+            )
+
+        return chart.is_all(has_none, parts)
 
 
 def _present(terms: Monomials) -> set[tuple[int, ...]]:
