@@ -102,10 +102,10 @@ class Enclosure:
         >>> Enclosure(Fraction(-1, 10**30), Fraction(1, 10**30)).text(), Enclosure(Fraction(1), Fraction(2)).text()
         ('0 ± 1e-30', '1.5 ± 0.5')
         """
-        told = self.told_digits(digits)
-        if told is None:
+        settled = self.told_digits(digits)
+        if settled is None:
             return self._with_error()
-        digits = told
+        digits = settled
         if self.low == self.high == 0:
             return "0"
         value = self.center

@@ -64,10 +64,10 @@ def check_enclosed(found: Mapping[str, Any], slice: Slice) -> str:
                 raise Violation(
                     f"(total, stable, index) {said} are said to be at {shortest_text(at)}; there are {there}"
                 )
-    told = f"{number} points"
+    checked = f"{number} points"
     if unknown or not number:
-        return Unchecked(f"{told}; {unknown} were not decided")
-    return told
+        return Unchecked(f"{checked}; {unknown} were not decided")
+    return checked
 
 
 _Part = tuple[Fraction, Fraction]

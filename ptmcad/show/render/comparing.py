@@ -138,9 +138,9 @@ def _panels(
         title: str, legend: Iterable[Entry], names: Sequence[str] | None, **drawn: Any
     ) -> Panel:
         marks, hidden = arrows_of(drawn["seen"], sides, dpi, type.detail, names)
-        told = [*legend, *hidden_entries(hidden)]
+        rows = [*legend, *hidden_entries(hidden)]
         without = style.legend is LegendPlace.NONE
-        below = [] if without else [rewrapped(entry, side, type) for entry in told]
+        below = [] if without else [rewrapped(entry, side, type) for entry in rows]
         head = few(wrapped(title, side, type.head, True), _MAX_HEAD)
         return Panel(head=head, legend=below, arrows=marks, **drawn)
 

@@ -169,8 +169,8 @@ class SweepFilm:
             result = maps(number)
             fills |= fills_by_count(paint_of(DEFAULT, result), result)
             head = head_of(result.slice)[:1]
-        told = (Entry((text,), fills[text]) for text in sorted(fills, key=in_order))
-        self.legend = [Entry(head, strong=True), *told]
+        entries = (Entry((text,), fills[text]) for text in sorted(fills, key=in_order))
+        self.legend = [Entry(head, strong=True), *entries]
 
     def __len__(self) -> int:
         return len(self.values)

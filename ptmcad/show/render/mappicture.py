@@ -206,9 +206,9 @@ class MapDrawing(NamedTuple):
         return figure, left_out(seen, layout)
 
     def fit(self) -> tuple[_Seen, Layout]:
-        """What is to be drawn on a page of a given size, and where.
+        """The contents of a page of a given size, and their places.
 
-        What is thin follows from the map's size, which follows from what has to be told about thin
+        Which regions are thin follows from the map's size, which follows from the text about thin
         regions.
         """
         result, style, whole = self.result, self.style, shapes(self.result)

@@ -28,8 +28,8 @@ _WORTHWHILE = 0.75
 _MAX_SLOPE = 1e100
 _ROUNDING = 2.0**-49
 _WIDTH_WEIGHT = 0.6
-"""How much a side's width counts, against what the equations change along it, when it is chosen
-what is halved.
+"""Weight of a side's width, against the change of the equations along it, in the choice of the
+variable to bisect.
 """
 _FLAT = 2.0**-60
 """Share of the window: a rectangle that is flatter, as those that are drawn to the window's edge,
@@ -43,7 +43,7 @@ _MIN_SHARE = 0.1
 
 @compiled
 def look(
-    system: Any, tape: Any, pieces: Any, boxes: Any, outcome: Any, rest: Any, told: Any
+    system: Any, tape: Any, pieces: Any, boxes: Any, outcome: Any, rest: Any, exclusions: Any
 ) -> None:
     """Treat boxes one by one.
 
@@ -54,13 +54,13 @@ def look(
     outcome : (number,), as above.
     rest : (number, variables, 2), the second halves of those that are `HALVED`; `boxes` has the
         first ones.
-    told : (formulas), those that are zero and then those that are not negative: how many boxes each
-        of them has excluded is added.
+    exclusions : (formulas), those that are zero and then those that are not negative: the number of
+        boxes that each of them excludes is added.
     """
     forms, rows, solved_for = _room(system, tape, boxes.shape[1])
     for n in range(len(boxes)):
         box = boxes[n]
-        outcome[n] = _look_at(system, tape, pieces, box, forms, rows, solved_for, told)
+        outcome[n] = _look_at(system, tape, pieces, box, forms, rows, solved_for, exclusions)
         if outcome[n] == HALVED:
             k, half = _halving(system, forms, box)
             if k < 0:
@@ -108,7 +108,7 @@ def isolate(system: Any, tape: Any, pieces: Any, boxes: Any, budget: int) -> int
     """
     most, nv = boxes.shape[0], boxes.shape[1]
     forms, rows, solved_for = _room(system, tape, nv)
-    told = np.zeros(len(rows))
+    exclusions = np.zeros(len(rows))
     box, stuck, waiting = (
         np.empty((nv, 2)),
         0,
@@ -119,7 +119,7 @@ def isolate(system: Any, tape: Any, pieces: Any, boxes: Any, budget: int) -> int
             break
         waiting -= 1
         box[:] = boxes[stuck + waiting]
-        outcome = _look_at(system, tape, pieces, box, forms, rows, solved_for, told)
+        outcome = _look_at(system, tape, pieces, box, forms, rows, solved_for, exclusions)
         if outcome == GONE:
             continue
         k, half = _halving(system, forms, box) if outcome == HALVED else (-1, 0.0)
@@ -137,7 +137,14 @@ def isolate(system: Any, tape: Any, pieces: Any, boxes: Any, budget: int) -> int
 
 @compiled
 def _look_at(
-    system: Any, tape: Any, pieces: Any, box: Any, forms: Any, rows: Any, solved_for: Any, told: Any
+    system: Any,
+    tape: Any,
+    pieces: Any,
+    box: Any,
+    forms: Any,
+    rows: Any,
+    solved_for: Any,
+    exclusions: Any,
 ) -> int:
     """What becomes of one box."""
     nv = box.shape[0]
@@ -152,7 +159,7 @@ def _look_at(
             excluding = _excluding(system.not_negative, forms, True)
             excluding += len(system.zero) if excluding >= 0 else 0
         if excluding >= 0:
-            told[excluding] += 1
+            exclusions[excluding] += 1
             return GONE
         before[:] = box
         number = _eliminated(system, forms, nv, rows, solved_for)

@@ -41,7 +41,7 @@ class Compiled(NamedTuple):
     Attributes
     ----------
     early : how many of ``zero`` are known after the first operations, ``first`` many.
-    measured : those by which it is chosen what is halved.
+    measured : those that choose the variable to bisect.
     units : of each variable a length that is large.
     least : of each variable; a box that is narrower in all of them is not halved.
     halved : the first variable along which boxes are halved: 0, or 2 where the window's are only
@@ -89,11 +89,11 @@ class CriticalSystem:
 
     @property
     def measured(self) -> int:
-        """How many of the formulas that are zero tell what is halved; over a place one less."""
+        """Number of the formulas that are zero and choose the variable to bisect; over a place one less."""
         return len(self.start) - 1
 
     def with_some(self, chosen: Any) -> CriticalSystem:
-        """The same without some of its formulas, of which none is claimed then.
+        """The same without some of its formulas, which then exclude nothing.
 
         Parameters
         ----------

@@ -111,12 +111,18 @@ class _Choice:
         return boxes, outcome, other
 
     def _look(
-        self, system: CriticalSystem, boxes: Any, outcome: Any, other: Any, told: Any = None
+        self, system: CriticalSystem, boxes: Any, outcome: Any, other: Any, exclusions: Any = None
     ) -> None:
-        if told is None:
-            told = np.zeros(len(system.zero) + len(system.not_negative))
+        if exclusions is None:
+            exclusions = np.zeros(len(system.zero) + len(system.not_negative))
         look(
-            system.compiled(self._smallest), system.tape, self._pieces, boxes, outcome, other, told
+            system.compiled(self._smallest),
+            system.tape,
+            self._pieces,
+            boxes,
+            outcome,
+            other,
+            exclusions,
         )
 
 
