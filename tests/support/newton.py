@@ -80,14 +80,11 @@ def improved(parameters: Mapping[str, Fraction], start: Sequence[object]) -> Fou
         else:
             raise ArithmeticError("Newton's method does not converge")
         th1, th2 = _principal(th1), _principal(th2)
-        (x3, y3), (x4, y4), lengths, _, (a, b, c) = bent(p, th1, th2, mpmath)
-        stiffnesses = (p["k1"], p["k2"], p["k3"])
-        energy = sum(k * length**2 / 2 for k, length in zip(stiffnesses, lengths, strict=True))
-        energy -= p["F3x"] * x3 + p["F3"] * y3 + p["F4x"] * x4 + p["F4"] * y4
+        a3, a4, lengths, energy, _, (a, b, c) = bent(p, th1, th2, mpmath)
         root = mpmath.sqrt((a - c) ** 2 + 4 * b * b)
         return Found(
             (th1, th2),
-            {"A1": (mpf(0), mpf(0)), "A2": (p["rho"], mpf(0)), "A3": (x3, y3), "A4": (x4, y4)},
+            {"A1": (mpf(0), mpf(0)), "A2": (p["rho"], mpf(0)), "A3": a3, "A4": a4},
             lengths,
             (p["k1"] * lengths[0], p["k2"] * lengths[1], p["k3"] * lengths[2]),
             energy,

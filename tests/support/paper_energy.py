@@ -19,11 +19,12 @@ Vector = tuple[Any, Any]
 
 
 class Bent(NamedTuple):
-    """A pose: the nodes A3 and A4, the springs' lengths, U1 and U2, and U11, U12, U22."""
+    """A pose: the nodes A3 and A4, the springs' lengths, U, its slopes U1, U2, and U11, U12, U22."""
 
     a3: Vector
     a4: Vector
     lengths: tuple[Any, Any, Any]
+    energy: Any
     slopes: Vector
     bends: tuple[Any, Any, Any]
 
@@ -40,6 +41,7 @@ def bent(p: Mapping[str, Any], th1: Any, th2: Any, lib: Any) -> Bent:
         ((across - p["rho"], up), by1, zero, by11, zero),
         (_less(a4, a3), _less(zero, by1), by2, _less(zero, by11), by22),
     )
+    u = -p["F3x"] * a3[0] - p["F3"] * up - p["F4x"] * a4[0] - p["F4"] * rise
     u1, u2 = p["F3x"] * up - p["F3"] * across, -p["F4x"] * rise - p["F4"] * back
     u11, u22 = p["F3x"] * across + p["F3"] * up, -p["F4x"] * back + p["F4"] * rise
     u12, lengths = zero[0], []
@@ -47,12 +49,31 @@ def bent(p: Mapping[str, Any], th1: Any, th2: Any, lib: Any) -> Bent:
         k, free, square = p[f"k{n}"], p.get(f"l0_{n}", 0), _dot(d, d)
         length, along1, along2 = lib.sqrt(square), _dot(d, d1), _dot(d, d2)
         pull, turn = (k * (1 - free / length), k * free / (square * length)) if free else (k, 0)
+        u = u + k * ((length - free) ** 2 if free else square) / 2
         u1, u2 = u1 + pull * along1, u2 + pull * along2
         u11 = u11 + pull * (_dot(d1, d1) + _dot(d, d11)) + turn * along1 * along1
         u22 = u22 + pull * (_dot(d2, d2) + _dot(d, d22)) + turn * along2 * along2
         u12 = u12 + pull * _dot(d1, d2) + turn * along1 * along2
         lengths.append(length)
-    return Bent(a3, a4, (lengths[0], lengths[1], lengths[2]), (u1, u2), (u11, u12, u22))
+    return Bent(a3, a4, (lengths[0], lengths[1], lengths[2]), u, (u1, u2), (u11, u12, u22))
+
+
+def alike(
+    rho: Any,
+    length1: Any,
+    length2: Any,
+    free: Any,
+    f3: Any,
+    f4: Any,
+    *,
+    k: Any = 1,
+    f3x: Any = 0,
+    f4x: Any = 0,
+) -> dict[str, Any]:
+    """The parameters of springs that are alike."""
+    springs = {f"k{n}": k for n in (1, 2, 3)} | {f"l0_{n}": free for n in (1, 2, 3)}
+    loads = {"F3": f3, "F4": f4, "F3x": f3x, "F4x": f4x}
+    return {"rho": rho, "L1": length1, "L2": length2, **springs, **loads}
 
 
 def in_balls(value_of: Callable[[str], Fraction]) -> dict[str, arb]:
