@@ -357,9 +357,9 @@ LONG = (
     "design fig4 --maximise area",
 )
 DOCUMENTED = ("--value barrier", "--over L2", "--value stiffness", "--value length:k1", "--path", "--quantity th1",
-              "--surface", "--no-ranges")  # fmt: skip
-"""In commands that the tests of README.md, of `ptmcad range`, its branches, fields, films and
-surfaces run too.
+              "--surface", "--no-ranges", "--compare heavier", "--overlay")  # fmt: skip
+"""In commands that the tests of README.md, of `ptmcad range`, its branches, fields, films,
+surfaces, comparisons and measured points run too.
 """
 
 
