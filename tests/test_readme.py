@@ -84,7 +84,8 @@ SAYS = {
     "range": "operation range: 0.4981306959 to 1.041432630",
     "report": "fig4.html",
     "map": "50 random pixels agree with exact poses to ",
-    "animate": "snap at rho = 1.04143, L2 = 1.5: ",
+    "animate": " of equilibria, each one of as many as are counted exactly there\n"
+    "snap at rho = 1.04143, L2 = 1.5: the pose vanishes and falls to th1 = -47.52",
     "solve": "6 equilibria: 2 stable, 3 saddles, 1 maximum",
     "variety": "variety := [",
 }

@@ -50,7 +50,7 @@ class Branches:
     ----------
     quantities : their names as they were asked for.
     units : of each, as the record declares it or in words; empty for one that has none of its own.
-    undecided : values of the axis at which not all solutions could be told apart; there the
+    undecided : values of the axis at which not all solutions could be separated; there the
         branches have gaps.
     """
 

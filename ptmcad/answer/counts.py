@@ -75,7 +75,7 @@ class Counts(Counted):
     @property
     def working(self) -> int:
         """The number by which an operation range is found: of stable solutions, or of all where
-        none is told stable.
+        stability is not defined.
         """
         return self.total if self.stable is None else self.stable
 

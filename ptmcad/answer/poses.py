@@ -193,7 +193,7 @@ class Pose:
         return tuple(unknowns), tuple(nodes), tuple(springs), tuple(torsion)
 
     def __repr__(self) -> str:
-        kind = {True: "stable", False: "unstable", None: "degenerate, or not told"}[self.stable]
+        kind = {True: "stable", False: "unstable", None: "degenerate, or not decided"}[self.stable]
         angles = ", ".join(f"{d.text(6)}°" for d in self.degrees)
         reals = ", ".join(r.text(6) for r in self.reals)
         energy = "" if self.energy is None else f", energy {self.energy.text(6)}"
@@ -223,7 +223,7 @@ class Poses:
         degenerate; UNDECIDED with those that are proved when there are infinitely many or some
         could not be separated; see ``remark``.
     digits : significant digits that each enclosure settles, but for one that holds zero; one more
-        where it cannot be told from halfway between two texts of so many.
+        where it cannot be distinguished from halfway between two such texts.
     bits : the precision that was needed.
     units : of ``length`` and ``force``, where the record declares them; nothing but text depends on
         them.

@@ -69,13 +69,9 @@ MAX_COUNTED = 40
 MAX_BASIS = 100, 400, 4_000
 """Polynomials, terms of each and bits of a number in a basis of the equations at a point."""
 _UNCOUNTED = "not known: try single points first, by ptmcad solve"
-_UNSIZED = (
-    "not known: the critical curve's size is not told at once; try --timeout, or counts along lines"
-)
+_UNSIZED = "not known: the critical curve's size is not found at once; try --timeout, or counts along lines"
 _LONG = 16
-"""Complex solutions: with more of them the exact map takes so long that whoever asks for it is
-told.
-"""
+"""Complex solutions: with more of them the exact map takes so long that the answer warns of it."""
 _BY_INTERVALS = "; --engine certified encloses the map"
 
 
@@ -222,16 +218,16 @@ def _counted(asked: CheckedSlice, sized: bool) -> CheckedSlice:
             return replace(asked, complex_solutions=found, cost=f"not known: {seen}{late}")
     if not found:
         return replace(asked, cost=f"not known: at the sample {doubt}")
-    foretold = _foretold(problem, found) if not doubt and (sized or found > _LONG) else None
-    words = _UNSIZED if foretold is None else in_figures(foretold)
-    far = found > _LONG if foretold is None else not foretold.reachable
-    if far and foretold is not None:
+    predicted = _predicted(problem, found) if not doubt and (sized or found > _LONG) else None
+    words = _UNSIZED if predicted is None else in_figures(predicted)
+    far = found > _LONG if predicted is None else not predicted.reachable
+    if far and predicted is not None:
         words += f"; {OUT_OF_REACH}"
     offered = _BY_INTERVALS if far and _encloses(slice) else ""
-    return replace(asked, complex_solutions=found, cost=words + offered, forecast=foretold)
+    return replace(asked, complex_solutions=found, cost=words + offered, forecast=predicted)
 
 
-def _foretold(problem: SliceProblem, solutions: int) -> Forecast | None:
+def _predicted(problem: SliceProblem, solutions: int) -> Forecast | None:
     """The forecast for a slice with simple solutions; None where the curve is too large to tell its
     size at once.
     """
@@ -316,7 +312,7 @@ def warning(slice: Slice) -> str:
     )
 
 
-def foretold(slice: Slice) -> Iterator[str]:
+def predictions(slice: Slice) -> Iterator[str]:
     """What is known of an exact map before its heavy part: solutions, the curve, how it is
     projected, the cost.
     """

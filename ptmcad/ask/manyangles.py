@@ -54,7 +54,7 @@ def work_for(model: Model) -> WorkLimit | None:
 
 
 def work_by_msolve() -> WorkLimit | None:
-    """How much work the exact solutions may be where the search has not told all apart; None
+    """How much work the exact solutions may be where the search has not separated all; None
     without msolve.
     """
     from ptmcad.algebra.bases import SMALL
@@ -74,7 +74,7 @@ def counts_by_search(model: Model, point: Mapping[str, Fraction], timeout: float
     Raises
     ------
     LimitReached
-        When they were not all told apart.
+        When they were not all separated.
     """
     with loading("the certified engine"):
         from ptmcad.certified.plain.certifiedposes import point_slice
@@ -111,8 +111,8 @@ def _clock(tried: str, timeout: float | None) -> Callable[[], None]:
 
 
 def poses_by_search(mechanism: Model, point: Mapping[str, Fraction], digits: int) -> Poses:
-    """All equilibria at a point, by the certified engine; UNDECIDED where they were not all told
-    apart.
+    """All equilibria at a point, by the certified engine; UNDECIDED where they were not all
+    separated.
     """
     with loading("the certified engine"):
         from ptmcad.certified.plain.certifiedposes import plain_poses

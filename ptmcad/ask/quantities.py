@@ -207,7 +207,7 @@ def _of_part(model: Model, kind: QuantityKind, name: str, key: str) -> Quantity:
             )
     if mechanism is not model.whole and kind is not QuantityKind.ANGLE:
         raise ConfigError(
-            f"of closed loops, as {model.name} has, only the unknowns are told yet", key=key
+            f"of closed loops, as {model.name} has, only the unknowns are available yet", key=key
         )
     if name not in known:
         there = f": they are {', '.join(known)}" if known else ": there are none"

@@ -197,9 +197,9 @@ def announced(slice: Slice, options: Options) -> tuple[Any, ...]:
     )
     click.echo(explanation(steps))
     if not certified:
-        from ptmcad.ask.checking import foretold
+        from ptmcad.ask.checking import predictions
 
-        click.echo("\n".join(f"predicted: {text}" for text in foretold(slice)))
+        click.echo("\n".join(f"predicted: {text}" for text in predictions(slice)))
     later = () if certified else tuple(name for name in exactplan.LATER if name not in off)
     if later:
         click.echo(f"to be decided on the way: {', '.join(later)}")
@@ -223,8 +223,8 @@ def _names_of_savings(key: str, names: tuple[str, ...]) -> tuple[str, ...]:
 
 
 def _one(key: str, given: tuple[str, ...]) -> str | None:
-    """An option that is given once, where it is; of more than one the last would count and nobody
-    be told.
+    """An option that is given once, where it is; of more than one the last would count
+    without a warning.
     """
     if len(given) > 1:
         raise ConfigError(

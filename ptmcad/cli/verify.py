@@ -310,7 +310,7 @@ def _verified_poses(stored: Poses, versions: Any, progress: Progress) -> VerifyR
     anew = replace(poses_at(stored.model, stored.parameters, stored.digits), units=stored.units)
     now, rightly, left = json.loads(anew.to_json()), RIGHTLY, 0
     if versions != now["versions"]:
-        # an answer that was open may be told now, and with many unknowns another engine may answer
+        # an open answer may be decided now, and with many unknowns another engine may answer
         is_open = Status.UNDECIDED in (stored.status, anew.status)
         if is_open or len(stored.model.unknowns) > FEW:
             rightly |= {"status"}

@@ -149,10 +149,10 @@ def _summary(poses: Poses) -> list[str]:
     if poses.status is Status.UNDECIDED and not poses.equilibria:
         return [poses.remark]
     kinds = [kind_of(pose, poses.model) for pose in poses.equilibria]
-    told = () if "solution" in kinds else _KINDS
+    counted_kinds = () if "solution" in kinds else _KINDS
     tally = [
         f"{n} {_PLURALS.get(kind, kind) if n > 1 else kind}"
-        for kind in told
+        for kind in counted_kinds
         if (n := kinds.count(kind))
     ]
     parts = [

@@ -210,11 +210,11 @@ def part(
     people.
     """
     said = {"description": help, "default": shown}
-    told = codec.narrowed(
+    described = codec.narrowed(
         **{keyword: value for keyword, value in said.items() if value not in ("", ...)}
     )
     return Key(
-        told, None, default, always=True, instead=default if instead is _DEFAULT else instead
+        described, None, default, always=True, instead=default if instead is _DEFAULT else instead
     )
 
 

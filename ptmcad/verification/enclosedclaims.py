@@ -61,10 +61,10 @@ def check_enclosed(found: Entry, slice: Slice) -> str:
                     raise Violation(
                         f"{said} are said to be at {shortest_text(at)}; there are {there}"
                     )
-    told = f"{number} points"
+    checked = f"{number} points"
     if unknown or not number:
-        return Unchecked(f"{told}; {unknown} were not decided")
-    return told
+        return Unchecked(f"{checked}; {unknown} were not decided")
+    return checked
 
 
 def _check_cover(found: Entry, slice: Slice) -> None:

@@ -366,5 +366,5 @@ def check_maxima(lines: SliceLines, maxima: Sequence[Maximum]) -> str:
         if found is (not expected):
             words = "no range so long as is said" if expected else "a longer range than is said"
             raise Violation(f"at {over.name} = {shortest_text(lower(value))} there is {words}")
-    told = f"{len(claims)} claims of {len(maxima)} places; seed {lines.seed}"
-    return Unchecked(f"{told}; {unknown} were not decided") if unknown else told
+    checked = f"{len(claims)} claims of {len(maxima)} places; seed {lines.seed}"
+    return Unchecked(f"{checked}; {unknown} were not decided") if unknown else checked

@@ -215,12 +215,12 @@ def _check_rows(asked: _Asked, maxima: Sequence[Maximum]) -> str:
         if any(span.width.low > longest for span in ranges_in(gaps, working)):
             where = f"{found['over']['name']} = {shortest_text(value)}"
             raise Violation(f"at {where} there is a longer range than the longest one")
-    told = f"{len(found['rows']) - unknown} rows; seed {seed}"
+    extent = f"{len(found['rows']) - unknown} rows; seed {seed}"
     if unknown:
-        told = f"{told}; of {unknown} more nothing was found out"
+        extent = f"{extent}; of {unknown} more nothing was found out"
     if "stable" in found and not _occurs(asked, working, counts, maxima):
-        return Unchecked(f"{told}; nor that {working} is the greatest number")
-    return Unchecked(told) if unknown else told
+        return Unchecked(f"{extent}; nor that {working} is the greatest number")
+    return Unchecked(extent) if unknown else extent
 
 
 def _working(part: Entry) -> int:
@@ -260,7 +260,7 @@ def _check_extremes(asked: _Asked, maxima: Sequence[Maximum]) -> str:
     data, slice, seed = asked
     found = data["over"]
     if "stable" not in found:
-        return Unchecked("an earlier version made it: attainment is not told")
+        return Unchecked("an earlier version made it: attainment is not stated")
     along, over = (
         next(a for a in slice.axes if a.name == found[key]["name"]) for key in ("along", "over")
     )

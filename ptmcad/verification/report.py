@@ -135,7 +135,7 @@ def heading(width: int = WIDTH) -> str:
 
 
 FINISHED: ContextVar[Callable[[Check], None]] = ContextVar("FINISHED", default=lambda _check: None)
-"""Is told each check as soon as it is finished: a process that is ended has printed those."""
+"""Receives each check as soon as it is finished: a process that is ended has printed those."""
 
 
 def check_anew(
@@ -261,8 +261,8 @@ PARTS = 100
 
 @dataclass(slots=True)
 class CheckProgress:
-    """How far a verification is, for whoever watches: told as progress(words, done, total), which
-    only grows.
+    """The progress of a verification, reported as progress(words, done, total), which only
+    grows.
     """
 
     progress: Progress | None

@@ -236,7 +236,7 @@ def numbered_root(p: fmpz_poly, low: fmpq, high: fmpq, number: int) -> arb | Non
 
 @lru_cache(maxsize=64)
 def _counted_above(coefficients: Coefficients) -> Callable[[fmpq], int]:
-    """`roots_above`, for walls over the same abscissa, whose roots are told apart at the same
+    """`roots_above`, for walls over the same abscissa, whose roots are separated at the same
     heights.
     """
     return cache(partial(roots_above, coefficients))

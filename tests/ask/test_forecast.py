@@ -1,4 +1,4 @@
-"""What an exact map is foretold to take, and where that is said."""
+"""What an exact map is predicted to take, and where that is printed."""
 
 from __future__ import annotations
 

@@ -269,21 +269,27 @@ DESIGNS = {
 }
 
 
-@pytest.mark.parametrize("name", DESIGNS)
-def test_design_says_whether_its_bound_is_attained(
-    name: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    equation, count, bound, words = DESIGNS[name]
+def designed(folder: Path, name: str) -> Any:
+    """The document of a design."""
+    equation, count, *_ = DESIGNS[name]
     record = (
         f"system: {{unknowns: {{x: real}}, equations: [{equation}]}}\naxes: {{a: [-2, 2], b: [-1, 1]}}\n"
         f"design: {{maximise: range, along: a, over: {{b: [-1, 1]}}, where: {{stable: {count}}}}}\n"
     )
-    asked(["design", "--format", "json", "--evaluations", "5"], tmp_path, record)
+    asked(["design", "--format", "json", "--evaluations", "5"], folder, record)
+    return document(folder)
+
+
+@pytest.mark.parametrize("name", DESIGNS)
+def test_design_says_whether_its_bound_is_attained(
+    name: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    *_, bound, words = DESIGNS[name]
+    data = designed(tmp_path, name)
     out = capsys.readouterr().out
     assert (
         f"no design has more than {bound}" in out and f"by exact critical values: {words}\n" in out
     )
-    data = document(tmp_path)
     DESIGN.validate(data)
     assert data["bound"] == bound and [e["text"] for e in data["extremes"]] == [words]
     reached = Fraction(data["value"][0]) == Fraction(bound)
@@ -366,13 +372,7 @@ def test_verify_checks_what_a_design_says_of_attainment(
     name: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     """The true document holds; with the other word, or without the exception, it is false."""
-    equation, count, *_ = DESIGNS[name]
-    record = (
-        f"system: {{unknowns: {{x: real}}, equations: [{equation}]}}\naxes: {{a: [-2, 2], b: [-1, 1]}}\n"
-        f"design: {{maximise: range, along: a, over: {{b: [-1, 1]}}, where: {{stable: {count}}}}}\n"
-    )
-    asked(["design", "--format", "json", "--evaluations", "5"], tmp_path, record)
-    data = document(tmp_path)
+    data = designed(tmp_path, name)
     status, out = verdict(tmp_path, data, capsys)
     assert status == 0 and "FALSE" not in out
     (extreme,) = data["extremes"]
@@ -411,13 +411,7 @@ def test_verify_checks_it_at_irrational_values_too(
 def test_words_that_are_not_those_of_the_numbers_are_refused(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    equation, count, *_ = DESIGNS["approached"]
-    record = (
-        f"system: {{unknowns: {{x: real}}, equations: [{equation}]}}\naxes: {{a: [-2, 2], b: [-1, 1]}}\n"
-        f"design: {{maximise: range, along: a, over: {{b: [-1, 1]}}, where: {{stable: {count}}}}}\n"
-    )
-    asked(["design", "--format", "json", "--evaluations", "5"], tmp_path, record)
-    data = document(tmp_path)
+    data = designed(tmp_path, "approached")
     data["extremes"][0]["text"] = f"attained at b = 0{CRITICAL}"
     assert verdict(tmp_path, data, capsys)[0] == 2
     del data["extremes"]  # as older documents, which say nothing that could be wrong

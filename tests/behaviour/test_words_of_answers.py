@@ -108,27 +108,6 @@ def test_a_plan_names_no_charts(tmp_path: Path, capsys: pytest.CaptureFixture[st
     assert "turned by" not in out and "cone " not in out
 
 
-def test_no_compilation_is_spoken_of_that_took_no_time(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    """The first run of a process loads the engine, in less than a second when it has been compiled
-    before.
-    """
-    out = said(
-        TURNING,
-        tmp_path,
-        capsys,
-        "classify",
-        "--tolerance",
-        "1/5",
-        "--format",
-        "json",
-        "--out",
-        str(tmp_path),
-    )
-    assert "of which 0 s" not in out
-
-
 def test_degenerate_equilibria_agree_with_their_verb(capsys: pytest.CaptureFixture[str]) -> None:
     at = "F=1,G=1/3,L1=1,L2=1,L3=2,b=2"  # the loop folds flat in two ways
     assert run(["solve", str(CONFIGS / "mechanisms" / "four-bar.yaml"), "--at", at]) == 0

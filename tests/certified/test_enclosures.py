@@ -11,7 +11,7 @@ from functools import cache
 import numpy as np
 import pytest
 from flint import arb, ctx
-from support.paper_energy import PaperEnergy, energy_at
+from support.paper_energy import bent, in_balls
 
 from ptmcad.text.balls import ball_of
 
@@ -64,8 +64,8 @@ def tape_of(name: str) -> tuple[Tape, int]:
     return record([[*wanted, *m.lengths, *gradients]]), len(wanted)
 
 
-def energy(slice: Slice, x: Fraction, y: Fraction) -> PaperEnergy:
-    return energy_at(
+def values_at(slice: Slice, x: Fraction, y: Fraction) -> dict[str, arb]:
+    return in_balls(
         lambda n: slice.parameters[n].evaluate(x, y) if n in slice.parameters else Fraction(0)
     )
 
@@ -81,15 +81,10 @@ def test_formulas_are_those_of_the_verification(name: str) -> None:
         point += [Fraction(rng.randint(-3100, 3100), 1000) for _ in range(2)]
         with ctx.workprec(200):
             values = run_arb(tape, [ball_of(p) for p in point], 200)
-            there = energy(slice, point[0], point[1])
-            d = there(ball_of(point[2]), ball_of(point[3]))
-            bar1, bar2 = there.bars
-            h11, h22, h12 = bar1 * d.e11, bar2 * d.e22, bar1 * d.e12
-            expected = [bar1 * d.e1, bar2 * d.e2, h11, h22, h12, h11 * h22 - h12 * h12]
-            lengths = [q.sqrt() for q in there.squares(ball_of(point[2]), ball_of(point[3]))]
-            for place, value in zip(
-                tape.outputs[0][: number + 3], [*expected, *lengths], strict=True
-            ):
+            there = bent(values_at(slice, *point[:2]), *map(ball_of, point[2:]), arb)
+            h11, h12, h22 = there.bends
+            expected = [*there.slopes, h11, h22, h12, h11 * h22 - h12 * h12, *there.lengths]
+            for place, value in zip(tape.outputs[0][: number + 3], expected, strict=True):
                 assert abs(values[int(place)] - value) < 1e-40
 
 

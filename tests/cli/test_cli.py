@@ -16,7 +16,6 @@ import time
 from collections.abc import Callable
 from fractions import Fraction
 from importlib import import_module
-from importlib.util import find_spec
 from pathlib import Path
 from types import ModuleType
 from typing import Any
@@ -32,9 +31,6 @@ from ptmcad.show import render
 
 ROOT = Path(__file__).resolve().parents[2]
 FIG4 = ROOT / "configs" / "fig4.yaml"
-needs_engine = pytest.mark.skipif(
-    find_spec("ptmcad.ask.classification") is None, reason="the engine is not built yet"
-)
 
 
 class StandIn:
@@ -361,9 +357,9 @@ LONG = (
     "design fig4 --maximise area",
 )
 DOCUMENTED = ("--value barrier", "--over L2", "--value stiffness", "--value length:k1", "--path", "--quantity th1",
-              "--surface", "--no-ranges")  # fmt: skip
-"""In commands that the tests of README.md, of `ptmcad range`, its branches, fields, films and
-surfaces run too.
+              "--surface", "--no-ranges", "--compare heavier", "--overlay")  # fmt: skip
+"""In commands that the tests of README.md, of `ptmcad range`, its branches, fields, films,
+surfaces, comparisons and measured points run too.
 """
 
 
@@ -464,27 +460,6 @@ def test_start_up_is_lean() -> None:
         [sys.executable, "-c", program], cwd=ROOT, capture_output=True, text=True, check=True
     )
     assert done.stdout.strip() == "[]"
-
-
-@needs_engine
-def test_the_engine_is_reached(tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
-    assert (
-        run(
-            [
-                "classify",
-                "--slice",
-                "L2,rho",
-                "--out",
-                str(tmp_path),
-                "--format",
-                "json",
-                "--no-timings",
-            ]
-        )
-        == 0
-    )
-    assert names(tmp_path) == ["slice-L2-rho.json"]
-    assert capfd.readouterr().out.strip()
 
 
 @pytest.mark.slow

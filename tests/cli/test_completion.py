@@ -1,4 +1,4 @@
-"""What the shell is told when Tab is pressed, by real processes and click's protocol."""
+"""What the shell is told when Tab is pressed, by click's protocol, and by bash itself."""
 
 from __future__ import annotations
 
@@ -6,13 +6,13 @@ import os
 import shutil
 import subprocess
 import sys
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
 from support.maps import shipped
 
-from ptmcad.cli import COMMANDS, group, run
-from ptmcad.cli.completion import answer
+from ptmcad.cli import COMMANDS, COMPLETION, run
 
 ROOT = Path(__file__).resolve().parents[2]
 FIG4 = str(ROOT / "configs" / "fig4.yaml")
@@ -25,24 +25,25 @@ def request(shell: str, *words: str) -> dict[str, str]:
     return {"COMP_WORDS": " ".join(("ptmcad", *words)), "COMP_CWORD": place}
 
 
-def asked(shell: str, *words: str, cwd: Path | None = None) -> list[str]:
-    """What the program answers; the last word is the one that is being typed."""
-    environment = os.environ | {"_PTMCAD_COMPLETE": f"{shell}_complete"} | request(shell, *words)
-    done = subprocess.run(
-        [sys.executable, "-m", "ptmcad"],
-        env=environment,
-        cwd=cwd,
-        capture_output=True,
-        text=True,
-        check=False,
-    )
-    assert (done.returncode, done.stderr) == (0, "")
-    return [line for line in done.stdout.splitlines() if line]
+Asked = Callable[..., str]
 
 
-def plain(*words: str, cwd: Path | None = None) -> list[str]:
-    """The values that bash is given."""
-    return values_in(asked("bash", *words, cwd=cwd))
+@pytest.fixture
+def asked(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> Asked:
+    """What the program prints where a shell asks it; the last word is the one that is being typed.
+    Real processes are asked by bash itself."""
+
+    def answer(instruction: str, *words: str, status: int = 0) -> str:
+        shell = instruction.partition("_")[0]
+        for name, value in request(shell, *words).items() if words else ():
+            monkeypatch.setenv(name, value)
+        monkeypatch.setenv(COMPLETION, instruction)
+        assert run([]) == status
+        out, err = capsys.readouterr()
+        assert not (err if status == 0 else out)
+        return out or err
+
+    return answer
 
 
 def values_in(lines: list[str]) -> list[str]:
@@ -50,57 +51,32 @@ def values_in(lines: list[str]) -> list[str]:
     return [line.removeprefix("plain,") for line in lines]
 
 
-def test_every_shell_is_answered() -> None:
-    assert asked("bash", "cl") == ["plain,classify"]
-    assert asked("zsh", "cl")[:2] == ["plain", "classify"]
-    assert [line.partition("\t")[0] for line in asked("fish", "cl")] == ["plain,classify"]
+def test_every_shell_is_answered(asked: Asked) -> None:
+    assert asked("bash_complete", "cl").split() == ["plain,classify"]
+    assert asked("zsh_complete", "cl").split()[:2] == ["plain", "classify"]
+    assert asked("fish_complete", "cl").partition("\t")[0] == "plain,classify"
 
 
-def told(
-    words: list[str], monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> list[str]:
-    """What bash is told, asked for in this process."""
-    for name, value in request("bash", *words).items():
-        monkeypatch.setenv(name, value)
-    assert answer(group, "bash_complete", "ptmcad", "_PTMCAD_COMPLETE") == 0
-    out, err = capsys.readouterr()
-    assert err == ""
-    return values_in([line for line in out.splitlines() if line])
+@pytest.fixture
+def told(asked: Asked) -> Callable[[list[str]], list[str]]:
+    """The values that bash is given."""
+    return lambda words: values_in(asked("bash_complete", *words).split())
 
 
-def test_all_commands_and_one_option(
-    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
-    assert told([""], monkeypatch, capsys) == list(COMMANDS)
-    assert told(["verify", "--bo"], monkeypatch, capsys) == ["--boxes"]
+def test_all_commands_and_one_option(told: Callable[[list[str]], list[str]]) -> None:
+    assert told([""]) == list(COMMANDS)
+    assert told(["verify", "--bo"]) == ["--boxes"]
 
 
 @pytest.mark.parametrize("shell", ["bash", "zsh", "fish"])
-def test_the_script_of_a_shell(shell: str) -> None:
-    environment = os.environ | {"_PTMCAD_COMPLETE": f"{shell}_source"}
-    done = subprocess.run(
-        [sys.executable, "-m", "ptmcad"],
-        env=environment,
-        capture_output=True,
-        text=True,
-        check=True,
-    )
-    assert f"_PTMCAD_COMPLETE={shell}_complete" in done.stdout and done.stderr == ""
+def test_the_script_of_a_shell(shell: str, asked: Asked) -> None:
+    assert f"_PTMCAD_COMPLETE={shell}_complete" in asked(f"{shell}_source")
 
 
 @pytest.mark.parametrize("value", ["", "bash", "tcsh_complete", "bash_now"])
-@pytest.mark.fast_cases("tcsh_complete", "bash_now")
-def test_no_request_of_a_shell(value: str) -> None:
-    environment = os.environ | {"_PTMCAD_COMPLETE": value}
-    done = subprocess.run(
-        [sys.executable, "-m", "ptmcad"],
-        env=environment,
-        capture_output=True,
-        text=True,
-        check=False,
-    )
-    assert (done.returncode, done.stdout) == (2, "")
-    assert done.stderr == "error: _PTMCAD_COMPLETE is no request of bash, zsh or fish: unset it\n"
+def test_no_request_of_a_shell(value: str, asked: Asked) -> None:
+    said = "error: _PTMCAD_COMPLETE is no request of bash, zsh or fish: unset it\n"
+    assert asked(value, status=2) == said
 
 
 @pytest.mark.parametrize(
@@ -120,12 +96,9 @@ def test_no_request_of_a_shell(value: str) -> None:
     ],
 )
 def test_values(
-    words: list[str],
-    values: list[str],
-    monkeypatch: pytest.MonkeyPatch,
-    capsys: pytest.CaptureFixture[str],
+    words: list[str], values: list[str], told: Callable[[list[str]], list[str]]
 ) -> None:
-    found = told(words, monkeypatch, capsys)
+    found = told(words)
     assert found[: len(values)] == values and (values or not found)
 
 
@@ -152,18 +125,16 @@ def test_bash_itself(tmp_path: Path) -> None:
 
 
 def test_values_of_maps_and_palettes_are_proposed(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+    tmp_path: Path, told: Callable[[list[str]], list[str]]
 ) -> None:
     stored = tmp_path / "fig4.json"
     stored.write_text(shipped("fig4").to_json())
     for given in (FIG4, str(stored)):
-        assert told(["map", given, "--value", "bar"], monkeypatch, capsys) == ["barrier"]
-        assert "length:k1" in told(["map", given, "--value", "len"], monkeypatch, capsys)
-    assert told(["map", FIG4, "--pose", "sa"], monkeypatch, capsys) == ["saddle:"]
-    assert told(["plot", str(stored), "--palette", ""], monkeypatch, capsys) == ["default", "grey"]
-    assert told(["plot", str(stored), "--palette", "white,or"], monkeypatch, capsys) == [
-        "white,orange"
-    ]
+        assert told(["map", given, "--value", "bar"]) == ["barrier"]
+        assert "length:k1" in told(["map", given, "--value", "len"])
+    assert told(["map", FIG4, "--pose", "sa"]) == ["saddle:"]
+    assert told(["plot", str(stored), "--palette", ""]) == ["default", "grey"]
+    assert told(["plot", str(stored), "--palette", "white,or"]) == ["white,orange"]
 
 
 def test_options_without_effect_on_pictures_say_so(

@@ -42,22 +42,6 @@ def made(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder
 
 
-def test_a_family_is_verified_member_by_member(
-    folder: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    assert run(["verify", str(folder / "loads.json")]) == 0
-    out = capsys.readouterr().out
-    assert "F = -40\n" in out
-    assert "F = -10\n" in out
-    damaged = folder / "damaged"
-    damaged.mkdir()
-    for path in folder.glob("*.json"):
-        (damaged / path.name).write_text(path.read_text())
-    text = (damaged / "loads-F-10.json").read_text()
-    (damaged / "loads-F-10.json").write_text(text.replace('"stable": 2', '"stable": 3'))
-    assert run(["verify", str(damaged / "loads.json")]) == 1
-
-
 def test_a_family_is_drawn_again(
     folder: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -280,16 +264,25 @@ def test_without_a_surface_the_picture_is_a_stack_and_a_mesh_needs_no_option(
     assert "--surface has no effect here: this is one map" in capsys.readouterr().err
 
 
-def test_changes_are_verified_and_what_is_not_is_said(
-    disc: Path, capsys: pytest.CaptureFixture[str]
+def test_a_family_is_verified_member_by_member_with_its_changes(
+    disc: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     assert run(["verify", str(disc / "disc.json")]) == 0
-    out = " ".join(capsys.readouterr().out.split())
+    out = capsys.readouterr().out
+    stored = read_family((disc / "disc.json").read_text())
+    assert all(f"c = {value}\n" in out for value in stored.values)
+    out = " ".join(out.split())
     assert (
         "3 changes, compared with members 1/1000000 of the range away on both sides; 8 random members"
         in out
     )
     assert "not checked changes complete" in out
+    for name in ("disc.json", *stored.files):
+        (tmp_path / name).write_text((disc / name).read_text())
+    damaged = tmp_path / stored.files[-1]
+    damaged.write_text(damaged.read_text().replace('"total": 2', '"total": 3'))
+    assert run(["verify", str(tmp_path / "disc.json")]) == 1
+    assert "violated: counts: cell 0 is said to have 3 solutions" in capsys.readouterr().err
 
 
 def _without(found: dict[str, Any], number: int) -> dict[str, Any]:

@@ -18,13 +18,6 @@ def fig2_file(tmp_path: Path, shipped: Callable[..., RegionMap]) -> Path:
     return path
 
 
-def test_a_point(fig2: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    assert run(["locate", str(fig2), "--at", "rho=7/10, L2=3/2"]) == 0
-    out = capsys.readouterr().out
-    assert "stable  2" in out
-    assert "total   6" in out
-
-
 @pytest.mark.parametrize(
     ("at", "status"),
     [
@@ -90,8 +83,3 @@ def test_a_damaged_file(
     assert error.startswith("error: ")
     assert error.count("\n") == 1
     assert str(fig2) in error
-
-
-def test_verify_accepts(fig2: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    assert run(["verify", str(fig2)]) == 0
-    assert "signatures of trace forms" in capsys.readouterr().out

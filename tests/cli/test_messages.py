@@ -142,15 +142,6 @@ def test_verify_shows_progress_on_a_terminal(
         assert ("] check 20 of 20: areas ..., " in terminal.getvalue()) == watched
 
 
-def test_ranges_in_words(capsys: pytest.CaptureFixture[str]) -> None:
-    fig4 = str(CONFIGS / "fig4.yaml")
-    assert run(["range", fig4, "--along", "rho", "--over", "L2", "--rows", "1"]) == 0
-    assert ", attained at L2 = 1, a critical value of L2" in capsys.readouterr().out
-    assert run(["range", fig4, "--along", "rho", "--at", "L2=3/2"]) == 0
-    shown = capsys.readouterr().out
-    assert "as rho increases" in shown and "loses one stable equilibrium and one saddle" in shown
-
-
 @pytest.mark.parametrize("command", ["classify", "check", "variety"])
 def test_a_result_where_a_record_is_needed_is_named(
     command: str, tmp_path: Path, shipped: Shipped, capsys: pytest.CaptureFixture[str]

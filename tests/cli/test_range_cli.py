@@ -20,15 +20,6 @@ FIG3 = str(ROOT / "configs" / "fig3.yaml")
 SCHEMA = json.loads((ROOT / "docs" / "range.schema.json").read_text(encoding="utf-8"))
 
 
-def test_a_record(capsys: pytest.CaptureFixture[str]) -> None:
-    assert run(["range", FIG4, "--along", "rho", "--at", "L2=3/2"]) == 0
-    out = capsys.readouterr().out
-    assert out.startswith(
-        "question  fig4: rho in [0, 2], L2 in [0, 2]; F3 = -10, F4 = -10; count stable\n"
-    )
-    assert "operation range: 0.4981306959 to 1.041432630, width 0.5433019346\n" in out
-
-
 def test_no_count_is_named_of_which_the_table_has_no_column(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:

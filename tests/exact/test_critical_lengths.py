@@ -4,14 +4,17 @@ on both sides.
 
 from __future__ import annotations
 
+import math
 from fractions import Fraction
 from itertools import pairwise
-from math import cos, hypot, sin
+from math import cos, sin
 from pathlib import Path
 from random import Random
+from typing import Any
 
 import pytest
 import sympy
+from support.paper_energy import alike, bent
 from support.programs import needs_msolve
 
 from ptmcad.algebra import msolve
@@ -21,14 +24,6 @@ from ptmcad.studies.paper.critical import UNKNOWNS, critical_free_lengths, criti
 from ptmcad.studies.paper.squaring import Design, signed_solutions
 
 DESIGN: Design = ("7/10", "1", "3/2", "1/5", "-1/10", "-1/10")
-
-
-def potential(
-    rho: float, l1: float, l2: float, l0: float, f3: float, f4: float, a: float, b: float
-) -> float:
-    x3, y3, x4, y4 = l1 * cos(a), l1 * sin(a), rho - l2 * cos(b), l2 * sin(b)
-    lengths = hypot(x4, y4), hypot(x3 - rho, y3), hypot(x3 - x4, y3 - y4)
-    return sum((x - l0) ** 2 for x in lengths) / 2 - f3 * y3 - f4 * y4
 
 
 @pytest.mark.parametrize("seed", [0, 1, *(pytest.param(k, marks=pytest.mark.slow) for k in (2, 3))])
@@ -45,8 +40,8 @@ def test_equations_are_derivatives_of_the_potential(seed: int) -> None:
     ratios = []
     for _ in range(3):
         free, a, b = random.uniform(0.5, 3), random.uniform(-3, 3), random.uniform(-3, 3)
-        x3, y3, x4, y4 = l1 * cos(a), l1 * sin(a), rho - l2 * cos(b), l2 * sin(b)
-        inverses = 1 / hypot(x4, y4), 1 / hypot(x3 - rho, y3), 1 / hypot(x3 - x4, y3 - y4)
+        p = alike(rho, l1, l2, free, f3, f4)
+        inverses = (1 / length for length in bent(p, a, b, math).lengths)
         at = dict(
             zip(map(str, UNKNOWNS), (*inverses, cos(a), sin(a), cos(b), sin(b), free), strict=True)
         )
@@ -54,10 +49,8 @@ def test_equations_are_derivatives_of_the_potential(seed: int) -> None:
         assert max(map(abs, values[:5])) < 1e-7
         h = 1e-3
 
-        def u(
-            i: int, j: int, free: float = free, a: float = a, b: float = b, h: float = h
-        ) -> float:
-            return potential(rho, l1, l2, free, f3, f4, a + i * h, b + j * h)
+        def u(i: int, j: int, p: Any = p, a: float = a, b: float = b, h: float = h) -> float:
+            return float(bent(p, a + i * h, b + j * h, math).energy)
 
         h11, h22 = ((u(i, j) - 2 * u(0, 0) + u(-i, -j)) / h**2 for i, j in ((1, 0), (0, 1)))
         h12 = (u(1, 1) - u(1, -1) - u(-1, 1) + u(-1, -1)) / (4 * h * h)

@@ -7,14 +7,16 @@ arithmetic.
 
 from __future__ import annotations
 
+import math
 from fractions import Fraction
-from math import cos, hypot, sin
+from math import cos, sin
 from types import SimpleNamespace
 
 import pytest
 from flint import Ordering, fmpq_mpoly, fmpq_mpoly_ctx
 from support.counting import system_of
 from support.free_length_equilibria import free_length_equilibria
+from support.paper_energy import bent
 
 from ptmcad.text.flint_numbers import to_fraction
 
@@ -249,29 +251,13 @@ def test_gradient_is_the_slope_of_the_potential() -> None:
     """A third way, by difference quotients of the lengths themselves: through no formula of the
     paper or of ours.
     """
-    length1, length2, rho, k1, k2, k3, f3, f4, f3x, f4x = (
-        1.0,
-        1.5,
-        0.7,
-        100.0,
-        150.0,
-        80.0,
-        -10.0,
-        7.0,
-        3.0,
-        -5.0,
+    values = (1.0, 1.5, 0.7, 100.0, 150.0, 80.0, -10.0, 7.0, 3.0, -5.0)
+    given = dict(
+        zip(("L1", "L2", "rho", "k1", "k2", "k3", "F3", "F4", "F3x", "F4x"), values, strict=True)
     )
-    values = (length1, length2, rho, k1, k2, k3, f3, f4, f3x, f4x)
 
     def energy(a: float, b: float) -> float:
-        x3, y3 = length1 * cos(a), length1 * sin(a)
-        x4, y4 = rho - length2 * cos(b), length2 * sin(b)
-        springs = (
-            k1 * hypot(x4, y4) ** 2
-            + k2 * hypot(x3 - rho, y3) ** 2
-            + k3 * hypot(x4 - x3, y4 - y3) ** 2
-        )
-        return springs / 2 - f3 * y3 - f4 * y4 - f3x * x3 - f4x * x4
+        return float(bent(given, a, b, math).energy)
 
     def ours(p: fmpq_mpoly, a: float, b: float) -> float:
         at = dict(zip((*SYSTEM.ring.parameters, "c1", "s1", "c2", "s2"), (*values, cos(a), sin(a), cos(b), sin(b)),

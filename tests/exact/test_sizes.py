@@ -1,4 +1,4 @@
-"""The size of the critical curve, foretold from lines, against the curves that are computed."""
+"""The size of the critical curve, predicted from lines, against the curves that are computed."""
 
 from __future__ import annotations
 

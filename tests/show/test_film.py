@@ -161,7 +161,7 @@ def test_what_ffmpeg_refuses_is_said(
     assert not list((tmp_path / "out").iterdir())
 
 
-def test_the_command_writes_a_film_and_says_where_it_snaps(
+def test_the_command_writes_one_film_of_a_record_and_of_its_map(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     assert run(["classify", FIG4, "--format", "json", "--no-areas", "--out", str(tmp_path)]) == 0
@@ -171,13 +171,6 @@ def test_the_command_writes_a_film_and_says_where_it_snaps(
     for source, name in ((FIG4, "a"), (stored, "b")):
         assert run(["animate", source, "--path", "rho=3/4:4/5,L2=3/2", *asked, "--name", name]) == 0
         assert f"{name}.gif" in capsys.readouterr().out
-    assert run(["animate", stored, "--path", PATH, *asked]) == 0
-    out = capsys.readouterr().out
-    assert (
-        "stable:2: 14 frames, 2 of equilibria, each one of as many as are counted exactly there\n"
-        in out
-    )
-    assert "snap at rho = 1.04143, L2 = 1.5: the pose vanishes and falls to th1 = -47.52" in out
     assert (tmp_path / "a.gif").read_bytes() == (tmp_path / "b.gif").read_bytes()
     assert run(["animate", stored, "--path", PATH, "--set", "F3=0", "--out", str(tmp_path)]) == 2
     assert "--set: a result has its slice already" in capsys.readouterr().err

@@ -1,20 +1,13 @@
-"""Words around one thing, around nothing, and around points that are not the paper's."""
+"""Words around nothing, and around points that are not the paper's."""
 
 from __future__ import annotations
 
 import pytest
 
 import ptmcad
-from ptmcad.ask.checking import _complex
 from ptmcad.errors import ConfigError
 from ptmcad.model import Mechanism, ptm
 from ptmcad.show.ranges.pathtable import _heights
-from ptmcad.show.table import table
-
-LINE = {
-    "system": {"unknowns": {"x": "real"}, "equations": ["x - a + b"]},
-    "axes": {"a": [0, 1], "b": [0, 1]},
-}
 
 
 def test_heights_have_the_names_of_points() -> None:
@@ -29,13 +22,6 @@ def test_heights_have_the_names_of_points() -> None:
     own = ptm()
     assert isinstance(own, Mechanism)
     assert _heights(own) == ["y3", "y4"]
-
-
-def test_one_is_not_many() -> None:
-    assert _complex(1, " at a = 0") == "1 complex one at a = 0"
-    assert _complex(2, "") == "2 complex ones"
-    root = {**LINE, "system": {"unknowns": {"x": "real"}, "equations": ["x^2 - a"]}}
-    assert "(1 term)" in table(ptmcad.classify({**root, "axes": {"a": [-1, 1], "b": [0, 1]}}))
 
 
 def test_no_names_are_no_list() -> None:

@@ -1,8 +1,8 @@
 """Every claim of the paper: its computed verdict, the computed facts, and the same facts found in
 another way.
 
-The other ways share no code with the checks: exact dual numbers over the rationals in place of
-SymPy and FLINT, tests/support/oracle.py for counts, Newton's method in floating point. Known
+The other ways share no code with the checks: exact slopes over the rationals in place of SymPy
+and FLINT, tests/support/oracle.py for counts, Newton's method in floating point. Known
 answers: the paper itself, and docs/errata.md.
 """
 
@@ -12,7 +12,6 @@ import dataclasses
 import math
 import re
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from fractions import Fraction
 from functools import cache
 from pathlib import Path
@@ -26,6 +25,7 @@ from support import oracle
 from support.few import few
 from support.free_length_equilibria import free_length_equilibria
 from support.maps import once_per_run
+from support.paper_energy import Bent, alike, bent
 
 from ptmcad.answer.regionmap import Merge, Status
 from ptmcad.studies.paper import claim, free, maps, statements
@@ -83,65 +83,23 @@ def expected(name: str) -> Verdict:
     return next((verdict for names, verdict in groups if name in names), Verdict.CONFIRMED)
 
 
-# --- another way to the model: dual numbers with rational coefficients ------------------------------------------------
-
-
-@dataclass(frozen=True)
-class Dual:
-    """A number with derivatives by two angles, up to second order: (value, d1, d2, d11, d12, d22)."""
-
-    parts: tuple[Fraction, ...]
-
-    @classmethod
-    def of(cls, x: Any) -> Dual:
-        return x if isinstance(x, Dual) else cls((Fraction(x), *(Fraction(0),) * 5))
-
-    def __add__(self, other: Any) -> Dual:
-        return Dual(tuple(a + b for a, b in zip(self.parts, Dual.of(other).parts, strict=True)))
-
-    __radd__ = __add__
-
-    def __neg__(self) -> Dual:
-        return Dual(tuple(-a for a in self.parts))
-
-    def __sub__(self, other: Any) -> Dual:
-        return self + -Dual.of(other)
-
-    def __rsub__(self, other: Any) -> Dual:
-        return -self + other
-
-    def __mul__(self, other: Any) -> Dual:
-        a, b = self.parts, Dual.of(other).parts
-        return Dual((
-            a[0] * b[0], a[0] * b[1] + a[1] * b[0], a[0] * b[2] + a[2] * b[0],
-            a[0] * b[3] + 2 * a[1] * b[1] + a[3] * b[0],
-            a[0] * b[4] + a[1] * b[2] + a[2] * b[1] + a[4] * b[0],
-            a[0] * b[5] + 2 * a[2] * b[2] + a[5] * b[0],
-        ))  # fmt: skip
-
-    __rmul__ = __mul__
-
+# --- another way to the model: exact slopes and bends, from the nodes --------------------------------------------------
 
 Point = Mapping[str, Fraction]
+HALF_ANGLES = SimpleNamespace(
+    cos=lambda t: (1 - t * t) / (1 + t * t),
+    sin=lambda t: 2 * t / (1 + t * t),
+    sqrt=lambda square: square,
+)
+"""Of tangents of half angles. Lengths are not rational, and without free lengths nothing has them."""
 
 
-def angle(t: Fraction, number: int) -> tuple[Dual, Dual]:
-    """Cosine and sine of an angle with the given half-angle tangent, with their derivatives."""
-    c, s, zero = (1 - t * t) / (1 + t * t), 2 * t / (1 + t * t), Fraction(0)
-    if number == 1:
-        return Dual((c, -s, zero, -c, zero, zero)), Dual((s, c, zero, -s, zero, zero))
-    return Dual((c, zero, -s, zero, zero, -c)), Dual((s, zero, c, zero, zero, -s))
-
-
-def energy(p: Point) -> Dual:
-    """U from the nodes' coordinates."""
-    (c1, s1), (c2, s2) = angle(p["t1"], 1), angle(p["t2"], 2)
-    x3, y3 = p["L1"] * c1, p["L1"] * s1
-    x4, y4 = p["rho"] - p["L2"] * c2, p["L2"] * s2
-    squares = x4 * x4 + y4 * y4 + (x3 - p["rho"]) * (x3 - p["rho"]) + y3 * y3
-    squares = squares + (x4 - x3) * (x4 - x3) + (y4 - y3) * (y4 - y3)
-    loads = p["F3"] * y3 + p["F4"] * y4 + p["F3x"] * x3 + p["F4x"] * x4
-    return p["k"] / 2 * squares - loads
+def pose(p: Point) -> Bent:
+    """At rational half angles."""
+    given = alike(
+        p["rho"], p["L1"], p["L2"], 0, p["F3"], p["F4"], k=p["k"], f3x=p["F3x"], f4x=p["F4x"]
+    )
+    return bent(given, p["t1"], p["t2"], HALF_ANGLES)
 
 
 def random_point(draw: Random, **given: Fraction | int) -> dict[str, Fraction]:
@@ -158,8 +116,10 @@ def random_point(draw: Random, **given: Fraction | int) -> dict[str, Fraction]:
 
 def value(expression: Any, p: Point) -> Fraction:
     """A SymPy expression at rational values, half angles for the cosines and sines."""
-    (c1, s1), (c2, s2) = angle(p["t1"], 1), angle(p["t2"], 2)
-    at = dict(p) | {"c1": c1.parts[0], "s1": s1.parts[0], "c2": c2.parts[0], "s2": s2.parts[0]}
+    turned = {
+        f"{f[0]}{n}": vars(HALF_ANGLES)[f](p[f"t{n}"]) for f in ("cos", "sin") for n in (1, 2)
+    }
+    at = dict(p) | turned
     found = sp.sympify(expression).subs(
         {
             s: sp.Rational(at[s.name].numerator, at[s.name].denominator)
@@ -182,12 +142,12 @@ def test_printed_and_right_equations_2_to_6_at_rational_points() -> None:
     """The verdicts on (2) to (6), found again without SymPy's differentiation."""
     differs = {"2-eq2": False, "2-eq4": False, "3-eq6": False}
     for p in POINTS:
-        u = energy(p).parts
+        u, (u1, u2) = pose(p).energy, pose(p).slopes
         clear = (1 + p["t1"] ** 2) * (1 + p["t2"] ** 2)
         for name, key, known in (
-            ("2-eq2", "shown", u[0]), ("2-eq3", "printed", -u[2] / p["L2"] / p["k"]),
-            ("2-eq4", "shown", -u[1] / p["L1"] / p["k"]), ("3-eq5", "printed", u[1] / p["L1"] * clear),
-            ("3-eq6", "shown", u[2] / p["L2"] * clear),
+            ("2-eq2", "shown", u), ("2-eq3", "printed", -u2 / p["L2"] / p["k"]),
+            ("2-eq4", "shown", -u1 / p["L1"] / p["k"]), ("3-eq5", "printed", u1 / p["L1"] * clear),
+            ("3-eq6", "shown", u2 / p["L2"] * clear),
         ):  # fmt: skip
             left, right = sides(name, key)[0]
             assert value(left, p) == value(right, p) == known
@@ -201,11 +161,11 @@ def test_horizontal_forces_at_rational_points() -> None:
     """5.1: + 2 F3x and - 2 F4x."""
     for seed in range(3):
         p = random_point(Random(seed), F3x=7, F4x=-3)
-        u = energy(p).parts
+        u1, u2 = pose(p).slopes
         clear = (1 + p["t1"] ** 2) * (1 + p["t2"] ** 2)
         five, six = (value(right, p) for _, right in sides("5.1-terms", "shown"))
-        assert (five, six) == (u[1] / p["L1"] * clear, u[2] / p["L2"] * clear)
-        assert value(sides("5.1-terms", "printed")[1][1], p) != u[2] / p["L2"] * clear
+        assert (five, six) == (u1 / p["L1"] * clear, u2 / p["L2"] * clear)
+        assert value(sides("5.1-terms", "printed")[1][1], p) != u2 / p["L2"] * clear
 
 
 # --- verdicts and facts -----------------------------------------------------------------------------------------------
@@ -352,21 +312,10 @@ def test_unequal_angles_in_floating_point() -> None:
     for t2, other in (pair, pair[::-1]):
         t1 = -(f * t2 + 2 * k * rho) / (f - 2 * k * rho * t2)
         assert t1 == pytest.approx(other)
-        p = {
-            "L1": 1,
-            "L2": 1,
-            "rho": rho,
-            "k": k,
-            "F3": f,
-            "F4": f,
-            "F3x": 0,
-            "F4x": 0,
-            "t1": t1,
-            "t2": t2,
-        }
-        u = [float(x) for x in energy({n: Fraction(v) for n, v in p.items()}).parts]
-        assert abs(u[1]) + abs(u[2]) < 1e-9
-        determinant = u[3] * u[5] - u[4] ** 2
+        angles = 2 * math.atan(t1), 2 * math.atan(t2)
+        *_, (u1, u2), (u11, u12, u22) = bent(alike(rho, 1, 1, 0, f, f, k=k), *angles, math)
+        assert abs(u1) + abs(u2) < 1e-9
+        determinant = u11 * u22 - u12**2
         square = k * rho * t2**2 - f * t2 - k * rho
         assert determinant == pytest.approx(-4 * length**2 * square**2 / (1 + t2**2) ** 2)
         shown = (
@@ -386,13 +335,12 @@ def test_non_flat_equilibria_at_a_triangle() -> None:
     """
     p = random_point(Random(0), L1=13, L2=20, rho=Fraction(21, 2), k=1, F3=0, F4=0,
                      t1=Fraction(12, 13 + 5), t2=Fraction(12, 20 + 16))  # fmt: skip
-    u = energy(p).parts
-    assert u[1] == u[2] == 0
-    assert (u[3], u[5]) == (13**2, 20**2)
-    assert u[3] * u[5] - u[4] ** 2 == (2 * p["rho"] * 12) ** 2
-    (c1, s1), (c2, s2) = angle(p["t1"], 1), angle(p["t2"], 2)
-    assert 13 * s1.parts[0] == 20 * s2.parts[0] == 12
-    assert 13 * c1.parts[0] - (p["rho"] - 20 * c2.parts[0]) == p["rho"]
+    (x3, y3), (x4, y4), _, _, slopes, (u11, u12, u22) = pose(p)
+    assert slopes == (0, 0)
+    assert (u11, u22) == (13**2, 20**2)
+    assert u11 * u22 - u12**2 == (2 * p["rho"] * 12) ** 2
+    assert y3 == y4 == 12
+    assert x3 - x4 == p["rho"]
 
 
 @pytest.mark.parametrize(("length2", "rho", "stable"), [
@@ -473,27 +421,19 @@ def test_squared_equations_vanish_at_the_equilibria() -> None:
 
 
 def test_three_degrees_of_freedom_at_rational_points() -> None:
-    """2-dof: the positions' derivatives by rho, th1 and th2 are independent, by dual numbers and
+    """2-dof: the positions' derivatives by rho, th1 and th2 are independent, by
     elimination.
     """
     for p in POINTS:
-        (c1, s1), (c2, s2) = angle(p["t1"], 1), angle(p["t2"], 2)
-        moving = (p["rho"] - p["L2"] * c2, p["L2"] * s2, p["L1"] * c1, p["L1"] * s1)
-        by_angle = [[Fraction(0)] + [Dual.of(x).parts[n] for x in moving] for n in (1, 2)]
-        rows = [[Fraction(x) for x in (1, 1, 0, 0, 0)], *by_angle]
+        (x3, y3), (x4, y4), *_ = pose(p)
+        by_angle = (0, 0, 0, -y3, x3), (0, y4, p["rho"] - x4, 0, 0)  # of A2, A4 and A3
+        rows = [[Fraction(x) for x in row] for row in ((1, 1, 0, 0, 0), *by_angle)]
         assert sp.Matrix(3, 5, lambda i, j: sp.Rational(*rows[i][j].as_integer_ratio())).rank() == 3  # noqa: B023
 
 
-def elastic_energy(
-    design: Sequence[str], angles: tuple[float, float]
-) -> tuple[float, tuple[float, ...]]:
+def elastic(design: Sequence[str], a: float, b: float) -> Bent:
     """U/k of (17) in floating point, and the springs' lengths."""
-    rho, length1, length2, free, f3, f4 = map(float, design)
-    a, b = angles
-    x3, y3 = length1 * math.cos(a), length1 * math.sin(a)
-    x4, y4 = rho - length2 * math.cos(b), length2 * math.sin(b)
-    lengths = (math.hypot(x4, y4), math.hypot(x3 - rho, y3), math.hypot(x4 - x3, y4 - y3))
-    return sum((n - free) ** 2 for n in lengths) / 2 - f3 * y3 - f4 * y4, lengths
+    return bent(alike(*map(float, design)), a, b, math)
 
 
 def test_gradient_by_difference_quotients() -> None:
@@ -503,11 +443,11 @@ def test_gradient_by_difference_quotients() -> None:
     values = {"rho": rho, "L1": length1, "L2": length2, "k": 1.0, "F3": f3, "F4": f4, "F3x": 0.0, "F4x": 0.0,
               "c1": math.cos(a), "s1": math.sin(a), "c2": math.cos(b), "s2": math.sin(b)}  # fmt: skip
     values |= {"l0": free_length} | dict(
-        zip(("l1", "l2", "l3"), elastic_energy(design, (a, b))[1], strict=True)
+        zip(("l1", "l2", "l3"), elastic(design, a, b).lengths, strict=True)
     )
     for n, slope in enumerate(statements.gradient()):
         up, down = ((a + h * (n == 0) * e, b + h * (n == 1) * e) for e in (1, -1))
-        found = (elastic_energy(design, up)[0] - elastic_energy(design, down)[0]) / (2 * h)
+        found = (elastic(design, *up).energy - elastic(design, *down).energy) / (2 * h)
         assert float(slope.subs({s: values[s.name] for s in slope.free_symbols})) == pytest.approx(
             found, abs=1e-8
         )
@@ -520,7 +460,7 @@ def test_stable_and_tense_by_difference_quotients(design: Sequence[str]) -> None
     for e in free.equilibria(design).equilibria:
         a, b = (float(angle.center) for angle in e.angles)
         u = {
-            (i, j): elastic_energy(design, (a + i * h, b + j * h))[0]
+            (i, j): elastic(design, a + i * h, b + j * h).energy
             for i in (-1, 0, 1)
             for j in (-1, 0, 1)
         }
@@ -528,7 +468,7 @@ def test_stable_and_tense_by_difference_quotients(design: Sequence[str]) -> None
         h12 = (u[1, 1] + u[-1, -1] - u[1, -1] - u[-1, 1]) / 4
         stable, tense = (
             h11 > 0 and h11 * h22 > h12**2,
-            min(elastic_energy(design, (a, b))[1]) > float(design[3]),
+            min(elastic(design, a, b).lengths) > float(design[3]),
         )
         found[0] += stable
         found[1] += stable and not tense

@@ -13,44 +13,16 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from support.paper_energy import bent
+
 Floats = NDArray[np.float64]
 
 
 def derivatives(values: Mapping[str, float], a: Floats, b: Floats) -> tuple[Floats, ...]:
     """Gradient and Hessian of the energy at angles a, b, and the springs' lengths, shape (3, n)."""
-    rho, p, q = values["rho"], values["L1"], values["L2"]
-    one, nil = np.ones_like(a), np.zeros_like(a)
-    a1, a2 = (nil, nil), (rho * one, nil)
-    a3, a4 = (p * np.cos(a), p * np.sin(a)), (rho - q * np.cos(b), q * np.sin(b))
-    a3_a, a3_aa = (-p * np.sin(a), p * np.cos(a)), (-p * np.cos(a), -p * np.sin(a))
-    a4_b, a4_bb = (q * np.sin(b), q * np.cos(b)), (q * np.cos(b), -q * np.sin(b))
-    zero = (nil, nil)
-    springs = (
-        (a1, a4, zero, a4_b, zero, a4_bb, "1"),
-        (a2, a3, a3_a, zero, a3_aa, zero, "2"),
-        (a3, a4, (-a3_a[0], -a3_a[1]), a4_b, (-a3_aa[0], -a3_aa[1]), a4_bb, "3"),
-    )
-    g1 = -values["F3x"] * a3_a[0] - values["F3"] * a3_a[1]
-    g2 = -values["F4x"] * a4_b[0] - values["F4"] * a4_b[1]
-    h11 = -values["F3x"] * a3_aa[0] - values["F3"] * a3_aa[1]
-    h22 = -values["F4x"] * a4_bb[0] - values["F4"] * a4_bb[1]
-    h12 = nil
-    lengths = []
-    for start, end, da, db, daa, dbb, name in springs:
-        k, free = values[f"k{name}"], values[f"l0_{name}"]
-        x, y = end[0] - start[0], end[1] - start[1]
-        if name == "2":  # from A2 to A3: only A3 moves
-            x, y = end[0] - start[0], end[1] - start[1]
-        length = np.hypot(x, y)
-        lengths.append(length)
-        with np.errstate(all="ignore"):
-            m, n = k * (1 - free / length), k * free / length**3
-        u, v = x * da[0] + y * da[1], x * db[0] + y * db[1]
-        g1, g2 = g1 + m * u, g2 + m * v
-        h11 = h11 + m * (da[0] ** 2 + da[1] ** 2 + x * daa[0] + y * daa[1]) + n * u * u
-        h22 = h22 + m * (db[0] ** 2 + db[1] ** 2 + x * dbb[0] + y * dbb[1]) + n * v * v
-        h12 = h12 + m * (da[0] * db[0] + da[1] * db[1]) + n * u * v
-    return g1, g2, h11, h12, h22, np.array(lengths)
+    with np.errstate(all="ignore"):
+        there = bent(values, a, b, np)
+    return *there.slopes, *there.bends, np.array(there.lengths)
 
 
 def _starts(values: Mapping[str, float], grid: int) -> tuple[Floats, Floats]:

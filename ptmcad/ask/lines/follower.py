@@ -98,7 +98,7 @@ def pose_paths(
     is_open = enclosed and any(_order(c.at, begin) == 0 for c in critical)
     here = None if is_open else family.solutions.at(begin)
     if here is None:
-        doubt = ", or not told from one" * enclosed
+        doubt = ", or not distinguished from one" * enclosed
         raise ConfigError(
             f"{along} = {begin} is a critical value{doubt}: start beside it", key="--path"
         )
@@ -131,7 +131,7 @@ def _changes_on(slice: Slice, line: Line, *, enclosed: bool) -> tuple[Change, ..
 
 
 def _order(number: CriticalValue, value: Fraction) -> int:
-    """The sign of a critical value less another value; 0 where they are not told apart."""
+    """The sign of a critical value less another value; 0 where they cannot be distinguished."""
     if isinstance(number, Enclosure):
         return (number.low > value) - (number.high < value)
     return number.compare(value)
@@ -274,7 +274,7 @@ def _distances(family: LineSystem, gap: Fraction) -> tuple[Fraction, ...]:
     meets.
 
     Where the next critical value is near, the distance is a part of that to it: a branch that only
-    passes is bridged. With free lengths solutions are not told apart as near as without.
+    passes is bridged. With free lengths solutions are not separated as near as without.
     """
     least = family.line.along.width * _MIN_DISTANCE
     first = least if gap > least else gap / 2**12

@@ -60,8 +60,8 @@ from ptmcad.text.enclosure import AlgebraicNumber
 from ptmcad.text.flint_numbers import from_fraction, interval_of, simplest_between, to_fraction
 
 MAX_DIMENSION = 40
-"""Complex solutions, with multiplicity and at all conjugate values, up to which they are told
-apart.
+"""Complex solutions, with multiplicity and at all conjugate values, up to which they are
+separated.
 """
 _SAMPLES = 12
 """Tried in a gap until one has as many solutions, with multiplicity, as points of the line have in

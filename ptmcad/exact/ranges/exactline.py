@@ -115,9 +115,9 @@ def critical_values(line: Line) -> tuple[tuple[AlgebraicNumber, Component], ...]
     try:
         components, _, _ = discriminant_variety(on, window, frozenset({"infinity"}))
     except DegenerateSliceError as error:
-        told = with_folds(error, line.model, on, points(window))
-        if told is not error:
-            raise told from error
+        explained = with_folds(error, line.model, on, points(window))
+        if explained is not error:
+            raise explained from error
         raise DegenerateSliceError(
             f"the line {where} lies inside the discriminant variety: at every {line.along.name} some "
             f"{noun(line.model, 1)} has a singular {on.system.criterion.matrix}; fix another value"

@@ -285,5 +285,5 @@ def _undeclared(model: Model, faults: Faults) -> frozenset[str]:
     what they are.
     """
     undeclared = model.parameters.keys() - model.source.get("parameters", {})
-    told = faults.parts <= _TOLD
-    return frozenset(undeclared - {*model.variables} if told else undeclared)
+    clear = faults.parts <= _TOLD
+    return frozenset(undeclared - {*model.variables} if clear else undeclared)

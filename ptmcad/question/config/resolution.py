@@ -293,7 +293,7 @@ def point_of(record: Record) -> dict[str, Fraction]:
 
 
 def without_shorthands(values: Mapping[str, Fraction], mechanism: Model) -> dict[str, Fraction]:
-    """The values of what a point is told by: no shorthand, nothing idle, and free lengths only if
+    """The values that define a point: no shorthand, nothing idle, and free lengths only if
     some is not zero.
     """
     left_out = {*mechanism.shorthands, *mechanism.idle}  # what they stand for is there

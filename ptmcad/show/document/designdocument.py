@@ -137,7 +137,7 @@ _MODEL: Codec[Model] = Codec(
 
 
 def maximum(over: str, digits: int) -> Codec[Maximum]:
-    """The codec of a largest width; attainment is not decided where it is not told, as in older
+    """The codec of a largest width; attainment is not decided where it is not stored, as in older
     documents.
 
     Parameters

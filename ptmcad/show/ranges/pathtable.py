@@ -48,7 +48,7 @@ def branch_table(found: Branches) -> str:
     if found.undecided:
         lines += [
             "",
-            f"not all solutions could be told apart at {len(found.undecided)} of the values tried",
+            f"not all solutions could be separated at {len(found.undecided)} of the values tried",
         ]
     return "\n".join(lines)
 
@@ -182,8 +182,8 @@ def _unknowns(point: PathPoint | Target, model: Model, digits: int) -> str:
 
 
 def degrees(angle: Enclosure, digits: int) -> str:
-    """An angle in degrees, with as many digits as are settled; zero where it cannot be told from
-    it.
+    """An angle in degrees, with as many digits as are settled; zero where it cannot be
+    distinguished from it.
     """
     with ctx.workprec(200):
         ball = ball_of(angle.low).union(ball_of(angle.high)) * 180 / arb.pi()

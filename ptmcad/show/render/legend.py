@@ -141,8 +141,8 @@ def entries(
     head = head_of(result.slice)
     yield Entry(head, strong=True, heads=len(head))
     for text, regions in groups.items():
-        told = _areas(result, text, regions) if areas and known else []
-        yield Entry((_with_total(text, regions, result), *told), paint.fill(regions[0]))
+        bounds = _areas(result, text, regions) if areas and known else []
+        yield Entry((_with_total(text, regions, result), *bounds), paint.fill(regions[0]))
     yield Entry(())
     if result.cover is not None and result.undetermined:
         note = ("the count may change within it",) if len(result.regions) > 1 else ()

@@ -194,10 +194,10 @@ class MapDrawing(NamedTuple):
         return figure, left_out(seen, layout)
 
     def fit(self) -> tuple[_Seen, Layout]:
-        """What is to be drawn, and where.
+        """The contents of a page of a given size, and their places.
 
-        On a page of a given size, what is thin follows from the map's size, which follows from what
-        has to be said of thin regions.
+        Which regions are thin follows from the map's size, which follows from the text about thin
+        regions.
         """
         result, style, whole = self.result, self.style, shapes(self.result)
         wide, tall = style.size or (8.4, 5.7)

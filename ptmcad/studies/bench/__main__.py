@@ -55,22 +55,22 @@ def timed(options: argparse.Namespace) -> pd.DataFrame:
 
     Each row of a record without free lengths holds what ``ptmcad check`` foretells.
     """
-    jobs, foretold = [Job("floor", "", "", FLOOR)], {}
+    jobs, predicted = [Job("floor", "", "", FLOOR)], {}
     with tempfile.TemporaryDirectory() as folder:
         for path, slice in slices_of(options.names).items():
             if slice.has_free_lengths and not options.names:
                 continue  # such a map takes as long as it is given
-            foretold[len(jobs)] = check(slice).forecast
+            predicted[len(jobs)] = check(slice).forecast
             for formats in ("json", "json,png,svg"):
                 asked = classification(path, slice.name, Path(folder), "--format", formats)
                 jobs.append(Job(str(path.with_suffix("")), "classify", formats, **asked))
         turns(jobs, options)
     rows = summary(jobs, "floor", "seconds")
-    costs = {number: cost for number, cost in foretold.items() if cost is not None}
-    rows["foretold s"] = pd.Series(
+    costs = {number: cost for number, cost in predicted.items() if cost is not None}
+    rows["predicted s"] = pd.Series(
         {number: round(cost.seconds, 2) for number, cost in costs.items()}, dtype=float
     )
-    rows["foretold MB"] = pd.Series(
+    rows["predicted MB"] = pd.Series(
         {number: round(cost.megabytes) for number, cost in costs.items()}, dtype="Int64"
     )
     return rows

@@ -166,8 +166,7 @@ def _run(steps: Iterable[_Step], known: list[arb]) -> None:
 
 @dataclass(frozen=True)
 class BallJet:
-    """The equations at all configurations in a box, and what is told of these besides when it is
-    asked for.
+    """The equations at all configurations in a box, and further values on request.
 
     Attributes
     ----------

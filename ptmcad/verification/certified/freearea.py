@@ -1,8 +1,8 @@
 """The check of the free area: how much of it is proved free of critical curves, and where that
 could not be done.
 
-Guarantee: of the free area, which is what the map's cells are, at least the share that is told has
-no critical point over it. A violation is a point of a cell with other counts than the cell's.
+Guarantee: of the free area, which is what the map's cells are, at least the reported share has no
+critical point over it. A violation is a point of a cell with other counts than the cell's.
 """
 
 from __future__ import annotations

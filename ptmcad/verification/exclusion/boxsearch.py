@@ -28,8 +28,8 @@ _WORTHWHILE = 0.75
 _MAX_SLOPE = 1e100
 _ROUNDING = 2.0**-49
 _WIDTH_WEIGHT = 0.6
-"""How much a side's width counts, against what the equations change along it, when it is chosen
-what is halved.
+"""Weight of a side's width, against the change of the equations along it, in the choice of the
+variable to bisect.
 """
 _FLAT = 2.0**-60
 """Share of the window: a rectangle that is flatter, as those that are drawn to the window's edge,
@@ -42,7 +42,7 @@ _MIN_SHARE = 0.1
 
 
 @compiled
-def look(system: Any, pieces: Any, boxes: Any, outcome: Any, rest: Any, told: Any) -> None:
+def look(system: Any, pieces: Any, boxes: Any, outcome: Any, rest: Any, exclusions: Any) -> None:
     """Treat boxes one by one.
 
     Parameters
@@ -52,13 +52,13 @@ def look(system: Any, pieces: Any, boxes: Any, outcome: Any, rest: Any, told: An
     outcome : (number,), as above.
     rest : (number, variables, 2), the second halves of those that are `HALVED`; `boxes` has the
         first ones.
-    told : (formulas), those that are zero and then those that are not negative: how many boxes each
-        of them has excluded is added.
+    exclusions : (formulas), those that are zero and then those that are not negative: the number of
+        boxes that each of them excludes is added.
     """
     room = _room(system, boxes.shape[1])
     for n in range(len(boxes)):
         box = boxes[n]
-        outcome[n], k, half = _treated(system, pieces, box, room, told)
+        outcome[n], k, half = _treated(system, pieces, box, room, exclusions)
         if outcome[n] == HALVED:
             rest[n] = box
             rest[n, k, 0] = half
@@ -79,9 +79,9 @@ def _room(system: Any, nv: int) -> Any:
 
 
 @compiled
-def _treated(system: Any, pieces: Any, box: Any, room: Any, told: Any) -> Any:
+def _treated(system: Any, pieces: Any, box: Any, room: Any, exclusions: Any) -> Any:
     """What becomes of one box; and if it is halved, the variable along which it is, and where."""
-    outcome = _look_at(system, pieces, box, room, told)
+    outcome = _look_at(system, pieces, box, room, exclusions)
     if outcome != HALVED:
         return outcome, -1, 0.0
     k = _widest(system, room[0], box)
@@ -105,14 +105,14 @@ def isolate(system: Any, pieces: Any, boxes: Any, budget: int) -> int:
     """
     most, nv = boxes.shape[0], boxes.shape[1]
     room = _room(system, nv)
-    told, box = np.zeros(len(room[1])), np.empty((nv, 2))
+    exclusions, box = np.zeros(len(room[1])), np.empty((nv, 2))
     stuck, waiting = 0, 1  # those that are stuck come first, then those that wait
     for _ in range(budget):
         if waiting == 0 or stuck + waiting == most:
             break
         waiting -= 1
         box[:] = boxes[stuck + waiting]
-        outcome, k, half = _treated(system, pieces, box, room, told)
+        outcome, k, half = _treated(system, pieces, box, room, exclusions)
         if outcome == HALVED:
             for side in range(2):
                 boxes[stuck + waiting] = box
@@ -126,7 +126,7 @@ def isolate(system: Any, pieces: Any, boxes: Any, budget: int) -> int:
 
 
 @compiled
-def _look_at(system: Any, pieces: Any, box: Any, room: Any, told: Any) -> int:
+def _look_at(system: Any, pieces: Any, box: Any, room: Any, exclusions: Any) -> int:
     """What becomes of one box, if it can be halved."""
     forms, rows, solved_for = room
     nv, tape = box.shape[0], system.tape
@@ -141,7 +141,7 @@ def _look_at(system: Any, pieces: Any, box: Any, room: Any, told: Any) -> int:
             excluding = _excluding(system.not_negative, forms, True)
             excluding += len(system.zero) if excluding >= 0 else 0
         if excluding >= 0:
-            told[excluding] += 1
+            exclusions[excluding] += 1
             return GONE
         before[:] = box
         number = _eliminated(system, forms, nv, rows, solved_for)

@@ -111,11 +111,11 @@ class _Choice:
         return boxes, outcome, other
 
     def _look(
-        self, system: CriticalSystem, boxes: Any, outcome: Any, other: Any, told: Any = None
+        self, system: CriticalSystem, boxes: Any, outcome: Any, other: Any, exclusions: Any = None
     ) -> None:
-        if told is None:
-            told = np.zeros(len(system.zeros) + len(system.signs))
-        look(system.compiled(self._smallest), self._pieces, boxes, outcome, other, told)
+        if exclusions is None:
+            exclusions = np.zeros(len(system.zeros) + len(system.signs))
+        look(system.compiled(self._smallest), self._pieces, boxes, outcome, other, exclusions)
 
 
 def _volumes(boxes: Any) -> Any:
