@@ -58,14 +58,11 @@ class IntegralEffort:
     heights : the window's edges.
     points : approximations of the critical values, or the window's edges, at the ends of the
         branch's stack.
-    degrees : of the polynomials that a branch is compared with; the closer the next branch, the
-        better it has to be.
     """
 
     share: arb
     narrowest: fmpq
     heights: tuple[fmpq, fmpq]
-    degrees: tuple[int, ...]
     points: tuple[fmpq, fmpq]
 
 
@@ -148,9 +145,13 @@ def _known_by_edges(left: fmpq, right: fmpq, effort: IntegralEffort, tried: bool
     return PanelPart(left, right, arb(0).union(arb(high - low)) * (right - left), tried)
 
 
+_DEGREES = (2, 10)
+"""Of the polynomials that a branch is compared with: the closer the next branch, the better it has
+to be.
+"""
 _POOR = 4
-"""A polynomial of higher degree is worth its cost where so small a share of a panel is proved, or
-none.
+"""The higher degree is worth its cost where a smaller share of a panel is proved than the inverse of
+this, as beside a point that limits each disk, or none.
 """
 
 
@@ -168,8 +169,8 @@ def _by_series(
     """
     best: tuple[arb, fmpq] | None = None
     shifted = [c(arb_poly([middle, 1])) for c in branch.value]
-    for degree in effort.degrees:
-        if best is not None and best[1] * _POOR > half:
+    for degree in _DEGREES:
+        if best is not None and best[1] * _POOR >= half:
             break
         found = _along(shifted, half, height, degree, effort)
         if found is not None and (best is None or found[1] > best[1]):
@@ -339,7 +340,7 @@ def _from_point(
     if root is None:
         return None
     try:
-        found = disk(divided, whole, root, effort.degrees[0])
+        found = disk(divided, whole, root, _DEGREES[0])
     except BallsTooWide:
         return None  # halved panels may do with what precision there is
     # the branch is that of the disk over the nearest place, and so over all others

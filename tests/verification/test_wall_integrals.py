@@ -65,7 +65,7 @@ def parts(name: str, sign: int, ends: tuple[fmpq, fmpq]) -> list[PanelPart]:
     return integrals_over(
         branch,
         *ends,
-        IntegralEffort(arb(2) ** -60, fmpq(1, 10**12), HEIGHTS, (2, 10), ends),
+        IntegralEffort(arb(2) ** -60, fmpq(1, 10**12), HEIGHTS, ends),
     )
 
 
@@ -119,7 +119,7 @@ def test_heights_are_the_roots_that_were_asked_for(share: fmpq) -> None:
 
 
 Terms = list[tuple[int, int, int]]
-EFFORT = IntegralEffort(arb(2) ** -30, fmpq(1, 10**12), HEIGHTS, (2, 10), HEIGHTS)
+EFFORT = IntegralEffort(arb(2) ** -30, fmpq(1, 10**12), HEIGHTS, HEIGHTS)
 NEAR, FAR = fmpq(1, 10**9), fmpq(1, 2)
 POINTS: dict[str, tuple[Terms, int, Callable[[arb], arb]]] = {
     "turning point: v^2 = u": ([(0, 2, 1), (1, 0, -1)], 1, lambda u: u * u.sqrt() * 2 / 3),
@@ -233,9 +233,7 @@ def part_beside(
     error.
     """
     near = at + ROOM * (1 if far > at else -1)
-    effort = IntegralEffort(
-        arb(2) ** -40, fmpq(1, 10**15), heights, (2, 10), (at + error, at + error)
-    )
+    effort = IntegralEffort(arb(2) ** -40, fmpq(1, 10**15), heights, (at + error, at + error))
     run = -2 if far > at else 2
     return integrals_over(branch_of(terms, root), min(near, far), max(near, far), effort, run)
 
