@@ -251,6 +251,21 @@ def test_one_series_reaches_a_point_at_which_branches_meet(name: str, error: fmp
         assert first.integral.rad() < 1e-9
 
 
+@pytest.mark.parametrize("error", [fmpq(0), fmpq(1, 10**30), fmpq(-1, 10**30)])
+@pytest.mark.parametrize("number", range(4))
+def test_branches_stay_near_to_a_point_at_which_many_meet(number: int, error: fmpq) -> None:
+    """Two pairs that touch: v = +-u^3 +- u^(11/2)."""
+    terms = [(0, 4, 1), (6, 2, -2), (11, 2, -2), (12, 0, 1), (17, 0, -2), (22, 0, 1)]
+    outer, inner = (-1, 1)[number > 1], (-1, 1)[number in (1, 3)]
+    far = arb(1) / 16
+    with ctx.workprec(128):
+        (part,) = part_beside(terms, number, fmpq(0), fmpq(1, 16), error, HEIGHTS)
+        assert (part.left, part.right, part.run) == (ROOM, fmpq(1, 16), -1)
+        expected = outer * far**4 / 4 + inner * far**6 * far.sqrt() * 2 / 13
+        assert part.integral.contains(expected - HEIGHTS[0] * (part.right - part.left))
+        assert part.integral.rad() < 1e-4
+
+
 def turned(kind: str, a: int, b: int, c: int, d: int, p: int, q: int) -> tuple[Terms, fmpq, fmpq]:
     """A fold, node or cusp at (p/8, q/8) on a curve that goes on as a polynomial: its terms, and
     the point.
