@@ -32,8 +32,6 @@ NARROWEST = 10**60
 """Of bounds that are relatively narrower than the inverse of this, it is tried whether they are off
 by so much.
 """
-CROWDED_PANELS = 100
-"""Panels for each stack beyond which polynomials of higher degree are worth their cost."""
 ATTEMPTS = 7
 """Times that precision is raised, and strips are narrowed, before bounds count as not checked."""
 
@@ -111,7 +109,7 @@ def _attempt(claims: Claims, strip: fmpq, margin: fmpq, bits: int) -> str | None
     bounds = [(ball_of(r.area[0]), ball_of(r.area[1])) for r in result.regions]
     number = max(1, sum(len(s.walls) for s in result.stacks))
     shares = [ball_of(_width(r)).mid() * margin / number for r in result.regions]
-    effort = IntegralEffort(min(shares), width / 2 ** (bits // 3), (low, high), (2,), (start, stop))
+    effort = IntegralEffort(min(shares), width / 2 ** (bits // 3), (low, high), (start, stop))
     whole = [arb(0) for _ in result.regions]
     panels: list[_WallPanel] = []
     for s, stack in enumerate(result.stacks):
@@ -147,8 +145,6 @@ def _attempt(claims: Claims, strip: fmpq, margin: fmpq, bits: int) -> str | None
                 open_regions.add(n)
         if not open_regions:
             return None
-        if len(panels) > CROWDED_PANELS * len(result.stacks):
-            effort = replace(effort, degrees=(2, 10))
         halved = _halved(panels, open_regions, effort)
         if halved is None:
             n = min(open_regions)
@@ -199,6 +195,6 @@ def _halved(
             return None
         middle = (left + right) / 2
         for ends in ((left, middle), (middle, right)) if tried else ((left, right),):
-            parts = integrals_over(p.branch, *ends, replace(p.effort, degrees=effort.degrees), run)
+            parts = integrals_over(p.branch, *ends, p.effort, run)
             refined += [p._replace(part=part) for part in parts]
     return refined

@@ -106,8 +106,8 @@ def disk(rows: Sequence[arb_poly], half: fmpq, root: arb, degree: int) -> Disk |
     # the polynomial follows the branch to its degree, so but for rounding the first coefficients
     # are zero
     rounded = sum((c.rad() * half**i for i, c in enumerate(d[0].coeffs())), arb(0))
-    blur = _size(d[0].truncate(length), arb(half)) + rounded
-    if len(d) > 2 and not blur * _size(d[2], arb(half)) * 2**20 < steepness * steepness:
+    blur = size(d[0].truncate(length), arb(half)) + rounded
+    if len(d) > 2 and not blur * size(d[2], arb(half)) * 2**20 < steepness * steepness:
         raise BallsTooWide  # rounding blurs the branch nearly as far as the next one
     absolute, slope = [_absolute(row) for row in d], _absolute(polynomial)
     for proved, factor in (
@@ -174,7 +174,7 @@ def _evening(steepness: arb_poly) -> arb_poly:
         ctx.cap = cap
 
 
-def _size(row: arb_poly, radius: arb) -> arb:
+def size(row: arb_poly, radius: arb) -> arb:
     """A bound for the polynomial on the disk of a radius."""
     return _absolute(row)(radius)
 

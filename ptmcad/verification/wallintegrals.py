@@ -12,7 +12,8 @@ e is j times the number of branches). This is a polynomial in s and t but for so
 negative powers of s, which are nothing at the point itself, and little where U, V and a are
 approximations. For each real s from some sigma on they are numbers, times powers of t, that are at
 most as large as at sigma. So what a disk proves of all polynomials with such numbers in their
-place, whatever they are, holds of t at each such s.
+place, whatever they are, holds of t at each such s. Where more branches meet, or in other ways, the
+branch is in a disk about V on whose edge the curve has no point over the panel.
 
 Guarantee: what is returned contains the integral of the branch that was asked for.
 """
@@ -26,7 +27,7 @@ from typing import NamedTuple
 from flint import arb, arb_poly, ctx, fmpq
 
 from ptmcad.verification.claims import PlaneCurve
-from ptmcad.verification.disks import BallsTooWide, Disk, disk, recentered, shifted
+from ptmcad.verification.disks import BallsTooWide, Disk, disk, recentered, shifted, size
 from ptmcad.verification.rootcounts import numbered_root
 
 
@@ -58,14 +59,11 @@ class IntegralEffort:
     heights : the window's edges.
     points : approximations of the critical values, or the window's edges, at the ends of the
         branch's stack.
-    degrees : of the polynomials that a branch is compared with; the closer the next branch, the
-        better it has to be.
     """
 
     share: arb
     narrowest: fmpq
     heights: tuple[fmpq, fmpq]
-    degrees: tuple[int, ...]
     points: tuple[fmpq, fmpq]
 
 
@@ -148,9 +146,13 @@ def _known_by_edges(left: fmpq, right: fmpq, effort: IntegralEffort, tried: bool
     return PanelPart(left, right, arb(0).union(arb(high - low)) * (right - left), tried)
 
 
+_DEGREES = (2, 10)
+"""Of the polynomials that a branch is compared with: the closer the next branch, the better it has
+to be.
+"""
 _POOR = 4
-"""A polynomial of higher degree is worth its cost where so small a share of a panel is proved, or
-none.
+"""The higher degree is worth its cost where a smaller share of a panel is proved than the inverse of
+this, as beside a point that limits each disk, or none.
 """
 
 
@@ -168,8 +170,8 @@ def _by_series(
     """
     best: tuple[arb, fmpq] | None = None
     shifted = [c(arb_poly([middle, 1])) for c in branch.value]
-    for degree in effort.degrees:
-        if best is not None and best[1] * _POOR > half:
+    for degree in _DEGREES:
+        if best is not None and best[1] * _POOR >= half:
             break
         found = _along(shifted, half, height, degree, effort)
         if found is not None and (best is None or found[1] > best[1]):
@@ -213,6 +215,12 @@ _NEWTON = 8
 """Steps to a point at which branches meet, from a place that is very near to it."""
 _SPREAD = 2**20
 """So many times as large as what is left out beside a critical value is a panel there at least."""
+_TOGETHER = 6
+"""Branches, real or not, that are looked for at a point."""
+_LITTLE = 2**10
+"""Part of the window's height in which branches that meet have to stay for the panel to be left
+whole.
+"""
 _FEW_BITS = 40
 _NEAREST = 2**40
 """Part of a panel beside a critical value that is a rational number: so much is left out."""
@@ -239,7 +247,7 @@ def _beside(
         if height is None:
             return None
         over = arb_poly([row(at) for row in branch.value])
-        for multiplicity in sorted({m.multiplicity for m in _MEETINGS}):
+        for multiplicity in range(2, min(len(branch.value), _TOGETHER + 1)):
             place = _meeting_place(over, multiplicity, height, abs(near - at))
             if place is None:
                 continue
@@ -260,7 +268,32 @@ def _beside(
                         *inner,
                         *_between(ends[0], near, effort),
                     ]
+            reach = _cluster_radius(rows, multiplicity, arb(abs(far - at)))
+            if reach is not None and abs(height - place) < reach < (high - low) / _LITTLE:
+                integral = (arb(place, reach) - low) * abs(far - ends[0])
+                run = 1 if at > far else -1
+                return [PanelPart(min(ends), max(ends), integral, True, run)]
     return None
+
+
+def _cluster_radius(rows: Sequence[arb_poly], multiplicity: int, far: arb) -> arb | None:
+    """A modulus that no height has over distances up to `far`, as one power's term outweighs the
+    others there (Pellet's theorem). Branches below it stay so. None where it is not proved.
+
+    Parameters
+    ----------
+    rows : coefficients in the distance from a point of the powers of the height above it.
+    multiplicity : the number of branches that meet at the point.
+    """
+    sizes = [size(row, far) for row in rows]
+    least = 2 * abs(rows[multiplicity][0]) - sizes[multiplicity]
+    if not least > 0:
+        return None
+    terms = enumerate(sizes[:multiplicity])
+    powers = ((2 * multiplicity * a / least).upper().root(multiplicity - j) for j, a in terms)
+    reach = max(powers).upper()
+    others = sum((a * reach**j for j, a in enumerate(sizes) if j != multiplicity), arb(0))
+    return reach if others < least * reach**multiplicity else None
 
 
 class _Meeting(NamedTuple):
@@ -339,7 +372,7 @@ def _from_point(
     if root is None:
         return None
     try:
-        found = disk(divided, whole, root, effort.degrees[0])
+        found = disk(divided, whole, root, _DEGREES[0])
     except BallsTooWide:
         return None  # halved panels may do with what precision there is
     # the branch is that of the disk over the nearest place, and so over all others

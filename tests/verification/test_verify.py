@@ -178,6 +178,25 @@ def test_areas_in_large_windows_are_told(
             check_areas(Claims(false))
 
 
+def test_areas_beside_branches_that_run_close_together_take_few_panels(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Two of the branches that meet at the origin are v = c u^3 +- d u^(11/2), nearly."""
+    equations = ["a*y^2 - b + x^6", "a*x^2 - b*x*y + y^2"]
+    system = {"unknowns": {"x": "real", "y": "real"}, "equations": equations}
+    axes = {"a": [-5, 5], "b": [-5, 5]}
+    true = stored(ptmcad.classify({"name": "close", "system": system, "axes": axes}))
+    tried = []
+
+    def counted(*given: Any) -> Any:
+        tried.append(given)
+        return integrals_over(*given)
+
+    monkeypatch.setattr(areaclaims, "integrals_over", counted)
+    check_areas(Claims(true))
+    assert len(tried) < 90
+
+
 def test_a_tiny_change_of_an_area_is_rejected(shipped: Callable[..., RegionMap]) -> None:
     true = stored(shipped("fig3", area_tolerance="1e-9"))
     check_areas(Claims(true))

@@ -65,7 +65,7 @@ def parts(name: str, sign: int, ends: tuple[fmpq, fmpq]) -> list[PanelPart]:
     return integrals_over(
         branch,
         *ends,
-        IntegralEffort(arb(2) ** -60, fmpq(1, 10**12), HEIGHTS, (2, 10), ends),
+        IntegralEffort(arb(2) ** -60, fmpq(1, 10**12), HEIGHTS, ends),
     )
 
 
@@ -119,7 +119,7 @@ def test_heights_are_the_roots_that_were_asked_for(share: fmpq) -> None:
 
 
 Terms = list[tuple[int, int, int]]
-EFFORT = IntegralEffort(arb(2) ** -30, fmpq(1, 10**12), HEIGHTS, (2, 10), HEIGHTS)
+EFFORT = IntegralEffort(arb(2) ** -30, fmpq(1, 10**12), HEIGHTS, HEIGHTS)
 NEAR, FAR = fmpq(1, 10**9), fmpq(1, 2)
 POINTS: dict[str, tuple[Terms, int, Callable[[arb], arb]]] = {
     "turning point: v^2 = u": ([(0, 2, 1), (1, 0, -1)], 1, lambda u: u * u.sqrt() * 2 / 3),
@@ -233,9 +233,7 @@ def part_beside(
     error.
     """
     near = at + ROOM * (1 if far > at else -1)
-    effort = IntegralEffort(
-        arb(2) ** -40, fmpq(1, 10**15), heights, (2, 10), (at + error, at + error)
-    )
+    effort = IntegralEffort(arb(2) ** -40, fmpq(1, 10**15), heights, (at + error, at + error))
     run = -2 if far > at else 2
     return integrals_over(branch_of(terms, root), min(near, far), max(near, far), effort, run)
 
@@ -251,6 +249,21 @@ def test_one_series_reaches_a_point_at_which_branches_meet(name: str, error: fmp
         expected = antiderivative(arb(first.right)) - antiderivative(arb(first.left))
         assert first.integral.overlaps(expected - HEIGHTS[0] * (first.right - first.left))
         assert first.integral.rad() < 1e-9
+
+
+@pytest.mark.parametrize("error", [fmpq(0), fmpq(1, 10**30), fmpq(-1, 10**30)])
+@pytest.mark.parametrize("number", range(4))
+def test_branches_stay_near_to_a_point_at_which_many_meet(number: int, error: fmpq) -> None:
+    """Two pairs that touch: v = +-u^3 +- u^(11/2)."""
+    terms = [(0, 4, 1), (6, 2, -2), (11, 2, -2), (12, 0, 1), (17, 0, -2), (22, 0, 1)]
+    outer, inner = (-1, 1)[number > 1], (-1, 1)[number in (1, 3)]
+    far = arb(1) / 16
+    with ctx.workprec(128):
+        (part,) = part_beside(terms, number, fmpq(0), fmpq(1, 16), error, HEIGHTS)
+        assert (part.left, part.right, part.run) == (ROOM, fmpq(1, 16), -1)
+        expected = outer * far**4 / 4 + inner * far**6 * far.sqrt() * 2 / 13
+        assert part.integral.contains(expected - HEIGHTS[0] * (part.right - part.left))
+        assert part.integral.rad() < 1e-4
 
 
 def turned(kind: str, a: int, b: int, c: int, d: int, p: int, q: int) -> tuple[Terms, fmpq, fmpq]:

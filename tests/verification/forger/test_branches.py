@@ -500,9 +500,7 @@ def test_branches_that_are_not_told_apart_ask_for_more_precision() -> None:
     distance = arb(2) ** -20
     rows = [arb_poly([1 - distance * distance, 0, -1]), arb_poly([-2]), arb_poly([1])]
     blurred = [rows[0] + arb(0, 2.0**-40), *rows[1:]]
-    effort = IntegralEffort(
-        arb(2) ** -20, fmpq(1, 2**20), (fmpq(0), fmpq(2)), (2,), (fmpq(0), fmpq(1))
-    )
+    effort = IntegralEffort(arb(2) ** -20, fmpq(1, 2**20), (fmpq(0), fmpq(2)), (fmpq(0), fmpq(1)))
     with ctx.workprec(64):
         with pytest.raises(BallsTooWide):
             _series(rows, arb_series([arb(1)], prec=3), 3)
