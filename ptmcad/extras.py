@@ -31,7 +31,7 @@ the name under which it is imported, and what needs it.
 
 
 def remedy(extra: str) -> str:
-    """What to do where its package is missing."""
+    """The message that its package is missing, with the command that installs it."""
     package, use = EXTRAS[extra]
     where = ", here and on every worker" if extra == "distributed" else ""
     return f"{use.format(package)}, which is not installed: pip install 'ptmcad[{extra}]'{where}"

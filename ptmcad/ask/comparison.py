@@ -141,7 +141,7 @@ def _comparison(
 
 
 def _of_each(maps: _Maps, answer: Callable[[RegionMap], _Answer]) -> list[_Answer]:
-    """What is asked of both maps: where one contradicts itself, the error's key says which."""
+    """The answers of both maps; where one contradicts itself, the error's key names it."""
     found = []
     for which, result in zip(("first", "second"), maps, strict=True):
         try:

@@ -50,8 +50,8 @@ def side(result: RegionMap) -> Side:
 
 
 def overlaid(first: Side, second: Side) -> tuple[Components, dict[int, Pair]]:
-    """What is outside both covers, and for each component of it, by descending area, the regions of
-    both maps that hold it, where both have one.
+    """The complement of both covers, and for each of its components, by descending area, the regions
+    of both maps that hold it, where both have one.
     """
     covers = (first[0].cover, second[0].cover)
     steps = max(cover.steps for cover in covers)
@@ -81,8 +81,8 @@ def bounds_of(
     complement: Components,
     counts: Mapping[int, tuple[tuple[int, ...], ...]],
 ) -> list[Bounds]:
-    """The area that is proved to have each pair of counts, and that which may have it: where each
-    map has its count or is undetermined.
+    """Bounds of the area with each pair of counts: proved, and possible where each map has its count
+    or is undetermined.
 
     Parameters
     ----------
