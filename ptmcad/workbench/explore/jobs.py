@@ -351,7 +351,7 @@ def _point_view(poses: Poses, at: Numbers) -> dict[str, Any]:
         "total": total,
         "status": poses.status.value,
         "remark": poses.remark,
-        "loads": [list(map(float, load.force)) for load in loads],
+        "loads": [list(map(float, force)) for _, force in loads],
         "equilibria": [_pose_view(pose, model) for pose in poses.equilibria],
     }
 
