@@ -79,9 +79,10 @@ def test_parameters_have_the_units_of_what_they_measure() -> None:
 def test_loads_have_their_points_and_names() -> None:
     values = {"L1": Fraction(1), "F3": Fraction(-10)}
     found = loads_at(ptm(), values)
-    assert [force.point for force in found] == list(ptm().loaded) == ["A3", "A4"]
-    assert dict(zip(found[0].names, found[0].force, strict=True))["F3"] == -10
-    assert all(force == (0, 0) for _, _, force in found[1:])  # what has no value is zero
+    assert [load.point for load, _ in found] == list(ptm().loaded) == ["A3", "A4"]
+    load, force = found[0]
+    assert dict(zip(load.names, force, strict=True))["F3"] == -10
+    assert all(force == (0, 0) for _, force in found[1:])  # what has no value is zero
 
 
 def test_numbers_of_a_pose_by_name_are_those_of_its_fields() -> None:
