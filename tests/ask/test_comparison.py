@@ -4,12 +4,12 @@ grids.
 
 from __future__ import annotations
 
-from dataclasses import replace
 from fractions import Fraction
 from pathlib import Path
 
 import pytest
 from support.maps import shipped
+from support.replacing import replace
 
 import ptmcad
 from ptmcad.answer.regionmap import RegionMap

@@ -6,7 +6,6 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Callable
-from dataclasses import replace
 from fractions import Fraction
 from pathlib import Path
 
@@ -16,6 +15,7 @@ from hypothesis import strategies as st
 from support.certified_maps import certified, circle
 from support.examples import examples
 from support.maps import part_of_free02, shipped
+from support.replacing import replace
 
 from ptmcad.answer.comparison import Comparison
 from ptmcad.answer.regionmap import RegionMap

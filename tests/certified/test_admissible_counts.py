@@ -4,7 +4,6 @@ such springs.
 
 from __future__ import annotations
 
-from dataclasses import replace
 from fractions import Fraction
 from functools import cache
 from pathlib import Path
@@ -17,6 +16,7 @@ from support.few import few
 from support.left_out import without_curves
 from support.loop_search import taut_along
 from support.places import random_points
+from support.replacing import replace
 
 import ptmcad
 from ptmcad.answer.regionmap import RegionMap, Status

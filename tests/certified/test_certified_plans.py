@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import replace
 
 import pytest
 from support.shipped_records import FREE, OTHER_FREE
 
 pytest.importorskip("numba")
+
+from support.replacing import replace
 
 import ptmcad
 from ptmcad.answer.regionmap import PlanStep

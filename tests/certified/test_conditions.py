@@ -5,13 +5,13 @@ another.
 from __future__ import annotations
 
 import random
-from dataclasses import replace
 from fractions import Fraction
 from typing import Any
 
 import pytest
 import yaml
 from support.places import area_with, assert_same_areas
+from support.replacing import replace
 
 import ptmcad
 from ptmcad.answer.regionmap import Status

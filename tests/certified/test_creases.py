@@ -5,7 +5,6 @@ against known ones.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import replace
 from fractions import Fraction
 from functools import cache
 from itertools import product
@@ -22,6 +21,7 @@ pytest.importorskip("numba")
 
 from support.examples import examples
 from support.places import random_points
+from support.replacing import replace
 
 import ptmcad
 from ptmcad.answer.regionmap import RegionMap, Status

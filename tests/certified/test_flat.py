@@ -4,11 +4,11 @@ other folds.
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import pytest
 
 pytest.importorskip("numba")
+
+from support.replacing import replace
 
 from ptmcad.certified.plain.criticalcurves import curves
 from ptmcad.certified.plain.mirrors import mirrors

@@ -4,12 +4,12 @@ counts with proof.
 
 from __future__ import annotations
 
-from dataclasses import replace
 from fractions import Fraction
 from typing import Any
 
 import pytest
 import yaml
+from support.replacing import replace
 
 import ptmcad
 from ptmcad import counts_at

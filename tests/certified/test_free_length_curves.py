@@ -5,13 +5,13 @@ their enclosures.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import replace
 from fractions import Fraction
 
 import numpy as np
 import pytest
 from numpy.typing import NDArray
 from support import dense_search
+from support.replacing import replace
 
 from ptmcad.certified.branchandprune import search_curve
 from ptmcad.certified.plain.criticalcurves import curves

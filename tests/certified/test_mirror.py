@@ -4,7 +4,6 @@ it.
 
 from __future__ import annotations
 
-from dataclasses import replace
 from fractions import Fraction
 
 import numpy as np
@@ -15,6 +14,7 @@ from support.dense_search import dense_search
 pytest.importorskip("numba")
 
 from support.places import assert_same_areas, random_points
+from support.replacing import replace
 
 import ptmcad
 from ptmcad.certified.branchandprune import search_curve

@@ -5,7 +5,6 @@ description.
 from __future__ import annotations
 
 from copy import deepcopy
-from dataclasses import replace
 from fractions import Fraction
 from typing import Any
 
@@ -14,6 +13,7 @@ import yaml
 from flint import arb, arb_mat
 from support.places import area_with
 from support.records import TRUSS
+from support.replacing import replace
 
 import ptmcad
 from ptmcad.answer.regionmap import Status

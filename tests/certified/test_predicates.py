@@ -6,10 +6,10 @@ from __future__ import annotations
 
 import random
 from collections.abc import Iterator
-from dataclasses import replace
 from fractions import Fraction
 
 import pytest
+from support.replacing import replace
 
 import ptmcad
 from ptmcad.ask.solving import poses_at

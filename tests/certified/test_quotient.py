@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import random
 from collections.abc import Sequence
-from dataclasses import replace
 from fractions import Fraction
 from math import asin, sqrt, tan
 from pathlib import Path
@@ -19,6 +18,8 @@ from support.mechanisms_energy import energy
 from ptmcad.text.balls import ball_of
 
 pytest.importorskip("numba")
+
+from support.replacing import replace
 
 import ptmcad
 from ptmcad.ask.lines.along import certified_intervals

@@ -4,7 +4,6 @@ known areas.
 
 from __future__ import annotations
 
-from dataclasses import replace
 from fractions import Fraction
 from functools import cache
 from itertools import product
@@ -20,6 +19,7 @@ from hypothesis import strategies as st
 pytest.importorskip("numba")
 
 from support.examples import examples
+from support.replacing import replace
 
 import ptmcad
 from ptmcad.answer.regionmap import RegionMap

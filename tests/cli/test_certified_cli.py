@@ -9,7 +9,6 @@ import math
 import os
 import sys
 import time
-from dataclasses import replace
 from pathlib import Path
 from time import perf_counter
 from types import ModuleType
@@ -17,6 +16,7 @@ from typing import Any
 
 import pytest
 from support.certified_map import certified_map, free_slice
+from support.replacing import replace
 
 import ptmcad
 from ptmcad.answer.regionmap import RegionMap, Status

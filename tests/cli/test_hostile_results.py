@@ -11,13 +11,13 @@ from __future__ import annotations
 import copy
 import json
 from collections.abc import Callable, Iterator
-from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import pytest
 from support.certified_maps import circle
 from support.maps import shipped
+from support.replacing import replace
 
 from ptmcad.answer.regionmap import RegionMap
 from ptmcad.cli import run

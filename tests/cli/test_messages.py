@@ -6,10 +6,10 @@ import io
 import json
 import sys
 from collections.abc import Callable
-from dataclasses import replace
 from pathlib import Path
 
 import pytest
+from support.replacing import replace
 
 from ptmcad.answer.regionmap import RegionMap
 from ptmcad.answer.timings import COMPILATION

@@ -4,7 +4,6 @@ as a formula.
 
 from __future__ import annotations
 
-from dataclasses import replace
 from fractions import Fraction
 from functools import cache
 
@@ -22,6 +21,7 @@ from support.qepcad_cells import (
     indices,
     window_cad,
 )
+from support.replacing import replace
 from support.sextic_question import Question, Task, Terms, question
 from support.singular_slice import SHIPPED, axes, counting_formulas
 

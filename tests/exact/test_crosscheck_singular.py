@@ -4,11 +4,11 @@ coordinates.
 
 from __future__ import annotations
 
-from dataclasses import replace
 from fractions import Fraction
 
 import pytest
 from support.programs import ProgramError, needs_singular, singular
+from support.replacing import replace
 from support.singular_slice import (
     SHIPPED,
     SOLUTIONS,

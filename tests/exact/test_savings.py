@@ -5,7 +5,6 @@ were.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import replace
 from fractions import Fraction
 from pathlib import Path
 
@@ -16,6 +15,7 @@ from hypothesis import strategies as st
 from support.examples import examples
 from support.few import few
 from support.random_slices import drawn
+from support.replacing import replace
 from support.same_maps import difference
 from support.shipped_records import EXACT
 

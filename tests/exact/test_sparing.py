@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from fractions import Fraction
 
 import pytest
 from support.maps import CONFIGS, shipped
+from support.replacing import replace
 
 from ptmcad.answer.regionmap import RegionMap
 from ptmcad.ask.classification import region_map

@@ -10,7 +10,6 @@ from __future__ import annotations
 
 import random
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import replace
 from fractions import Fraction
 from itertools import product
 from pathlib import Path
@@ -22,6 +21,7 @@ from mpmath import mp, mpf
 from support.definition import Values, spans, values_at
 from support.few import few
 from support.random_descriptions import KINDS, random_description
+from support.replacing import replace
 from support.shipped_records import CONFIGS
 
 import ptmcad

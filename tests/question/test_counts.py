@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from fractions import Fraction
 from math import hypot
 
 import pytest
+from support.replacing import replace
 
 import ptmcad
 from ptmcad.answer.words import count_words

@@ -8,11 +8,11 @@ degree that was too high to be looked at once.
 from __future__ import annotations
 
 import re
-from dataclasses import replace
 from fractions import Fraction
 from typing import Any
 
 import pytest
+from support.replacing import replace
 
 from ptmcad.ask.lines.along import certified_intervals
 from ptmcad.errors import ConfigError, GeometryError, PtmcadError

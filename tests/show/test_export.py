@@ -7,7 +7,6 @@ from __future__ import annotations
 import json
 import re
 from collections.abc import Iterable
-from dataclasses import replace
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -27,6 +26,7 @@ from support.programs import (
     singular,
 )
 from support.qepcad_cells import Decomposition, decomposition
+from support.replacing import replace
 from support.singular_slice import SHIPPED
 from test_polynomial_text import of_sympy
 

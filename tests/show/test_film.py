@@ -5,13 +5,13 @@ from __future__ import annotations
 import io
 import stat
 import sys
-from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 from PIL import Image
 from support.maps import CONFIGS, shipped
+from support.replacing import replace
 
 import ptmcad
 from ptmcad.answer.motion import Motion

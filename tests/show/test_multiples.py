@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from fractions import Fraction
 from pathlib import Path
 from typing import Any
@@ -10,6 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 from mpl_toolkits.mplot3d import proj3d
+from support.replacing import replace
 
 import ptmcad
 from ptmcad.answer.boundarysurface import BoundarySurface

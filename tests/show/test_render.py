@@ -5,7 +5,6 @@ time.
 from __future__ import annotations
 
 import re
-from dataclasses import replace
 from fractions import Fraction
 from itertools import combinations, pairwise, product
 from pathlib import Path
@@ -16,6 +15,7 @@ import numpy as np
 import pytest
 from matplotlib.colors import to_rgb
 from support.maps import shipped
+from support.replacing import replace
 
 import ptmcad
 from ptmcad.answer.regionmap import (

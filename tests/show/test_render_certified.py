@@ -5,7 +5,6 @@ in exact maps.
 from __future__ import annotations
 
 import re
-from dataclasses import replace
 from fractions import Fraction
 from html import unescape
 from math import ceil, pi
@@ -20,6 +19,7 @@ from matplotlib.image import imread
 from matplotlib.path import Path as Curve
 from support.certified_maps import certified, circle, crossing, cusp
 from support.pages import data_of
+from support.replacing import replace
 
 from ptmcad.answer.regionmap import RegionMap, Status
 from ptmcad.cover.rectangles import Cover

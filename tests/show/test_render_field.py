@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from fractions import Fraction
 from itertools import combinations
 from typing import Any
@@ -15,6 +14,7 @@ from matplotlib.figure import Figure
 from matplotlib.text import Text
 from support.few import few
 from support.maps import CONFIGS, shipped
+from support.replacing import replace
 
 import ptmcad
 from ptmcad.cli.plot import poses_at

@@ -5,7 +5,6 @@ and the same again.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import replace
 from fractions import Fraction
 from functools import cache
 from itertools import combinations, pairwise
@@ -18,6 +17,7 @@ from hypothesis import strategies as st
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from support.examples import examples
+from support.replacing import replace
 
 import ptmcad
 from ptmcad.answer.poses import Poses

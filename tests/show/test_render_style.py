@@ -5,7 +5,6 @@ on paper.
 from __future__ import annotations
 
 import re
-from dataclasses import replace
 from fractions import Fraction
 from itertools import combinations, pairwise
 from pathlib import Path
@@ -19,6 +18,7 @@ from matplotlib.figure import Figure
 from matplotlib.image import imread
 from matplotlib.text import Annotation, Text
 from support.maps import CONFIGS, shipped
+from support.replacing import replace
 from test_render import bands
 
 import ptmcad

@@ -8,7 +8,6 @@ import json
 import re
 import shlex
 from collections.abc import Callable
-from dataclasses import replace
 from fractions import Fraction
 from html import escape, unescape
 from html.parser import HTMLParser
@@ -23,6 +22,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from support.certified_map import certified_map
 from support.pages import data_of
+from support.replacing import replace
 from support.shipped_records import OTHER
 
 import ptmcad

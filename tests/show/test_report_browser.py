@@ -7,7 +7,6 @@ Screenshots go where PTMCAD_TESTS_SCREENSHOTS says, if it does; nothing is compa
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import replace
 from math import pi
 from pathlib import Path
 
@@ -17,6 +16,7 @@ from support.browser import Browser
 from support.certified_maps import certified
 from support.maps import CONFIGS
 from support.maps import shipped as computed
+from support.replacing import replace
 
 import ptmcad
 from ptmcad.answer.regionmap import RegionMap

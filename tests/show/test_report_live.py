@@ -7,7 +7,6 @@ from __future__ import annotations
 import json
 import random
 from collections.abc import Callable, Iterator
-from dataclasses import replace
 from fractions import Fraction
 from itertools import pairwise
 from math import pi, radians
@@ -21,6 +20,7 @@ from support.certified_maps import crossing, cusp
 from support.few import few
 from support.maps import CONFIGS, part_of_free02
 from support.maps import shipped as computed
+from support.replacing import replace
 
 import ptmcad
 from ptmcad.answer.regionmap import RegionMap

@@ -5,7 +5,6 @@ paper's slices gives.
 from __future__ import annotations
 
 import json
-from dataclasses import replace
 from fractions import Fraction
 from functools import cache
 from itertools import pairwise
@@ -16,6 +15,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from support.maps import shipped
+from support.replacing import replace
 
 import ptmcad
 from ptmcad.answer.regionmap import RegionMap

@@ -6,13 +6,13 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
-from dataclasses import replace
 from fractions import Fraction
 from pathlib import Path
 
 import pytest
 from support.maps import CONFIGS, shipped
 from support.programs import needs_qepcad
+from support.replacing import replace
 
 import ptmcad
 from ptmcad.answer.regionmap import RegionMap

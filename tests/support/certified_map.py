@@ -4,13 +4,13 @@ them undecided.
 
 from __future__ import annotations
 
-from dataclasses import replace
 from fractions import Fraction
 
 from ptmcad.answer.regionmap import Cell, PlanStep, Region, RegionMap, Solution, Status, System
 from ptmcad.cover.rectangles import Cover
 from ptmcad.question.config import slice_from_options
 from ptmcad.question.slice import Count, Point, Slice
+from support.replacing import replace
 
 STEPS = 16
 CROSS = ((0, 16, 7, 8), (10, 11, 0, 16), (10, 11, 3, 5))

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable
-from dataclasses import replace
 from fractions import Fraction
 
 import numpy as np
@@ -12,6 +11,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from support.maps import shipped
+from support.replacing import replace
 
 from ptmcad.errors import ExpressionError
 from ptmcad.text.numerals import (

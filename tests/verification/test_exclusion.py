@@ -6,7 +6,6 @@ from __future__ import annotations
 
 import random
 from collections.abc import Iterator
-from dataclasses import replace
 from fractions import Fraction
 from functools import cache
 from types import SimpleNamespace
@@ -26,6 +25,7 @@ from ptmcad.verification.report import Unchecked, Violation
 pytest.importorskip("numba")
 
 import numpy as np
+from support.replacing import replace
 
 from ptmcad.verification.certified import freearea
 from ptmcad.verification.certified.freearea import MAX_EFFORT, check_free_area, pieces_of

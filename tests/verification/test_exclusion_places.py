@@ -7,7 +7,6 @@ from __future__ import annotations
 import random
 import subprocess
 import sys
-from dataclasses import replace
 from fractions import Fraction
 from functools import cache
 from math import pi
@@ -30,6 +29,8 @@ from ptmcad.verification.normalform.lattice import SliceLattice
 
 pytest.importorskip("numba")
 
+
+from support.replacing import replace
 
 from ptmcad.verification.exclusion import places
 from ptmcad.verification.exclusion.criticalsystems import halves_over

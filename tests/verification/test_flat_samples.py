@@ -6,7 +6,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator
-from dataclasses import replace
 from fractions import Fraction
 from pathlib import Path
 
@@ -16,6 +15,7 @@ pytest.importorskip("numba")
 
 from forger.consistency import put
 from support.maps import once_per_run
+from support.replacing import replace
 
 import ptmcad
 from ptmcad.answer.regionmap import RegionMap, Solution

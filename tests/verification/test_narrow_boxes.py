@@ -5,7 +5,6 @@ ones refused.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
 from fractions import Fraction
 from functools import cache
 from typing import Any
@@ -14,6 +13,7 @@ import pytest
 import yaml
 from flint import Ordering, arb, ctx, fmpq, fmpq_mpoly_ctx
 from support.maps import CONFIGS
+from support.replacing import replace
 
 import ptmcad
 from ptmcad.answer.regionmap import RegionMap, Solution

@@ -6,13 +6,13 @@ from __future__ import annotations
 
 import random
 from collections.abc import Callable
-from dataclasses import replace
 from fractions import Fraction
 
 import pytest
 from flint import fmpq
 from support.certified_maps import certified
 from support.dips import AXES, DIPS, NAMES, random_square, thin_dip
+from support.replacing import replace
 
 import ptmcad
 from ptmcad.answer.regionmap import RegionMap

@@ -5,7 +5,6 @@ map.
 from __future__ import annotations
 
 import re
-from dataclasses import replace
 from fractions import Fraction
 from types import SimpleNamespace
 
@@ -13,6 +12,7 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from support.examples import examples
+from support.replacing import replace
 
 from ptmcad.answer.regionmap import RegionMap, Status, System
 from ptmcad.errors import ConfigError

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import replace
 from fractions import Fraction
 from functools import cache
 from itertools import combinations
@@ -14,6 +13,7 @@ from flint import fmpz_poly
 from hypothesis import given
 from hypothesis import strategies as st
 from support.few import few
+from support.replacing import replace
 
 import ptmcad
 from ptmcad.algebra import resultants

@@ -5,13 +5,14 @@ are.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from fractions import Fraction
 from math import prod
 from random import Random
 
 import pytest
 from flint import fmpq, fmpq_mpoly
+from support.replacing import replace
 from support.shipped_records import EXACT
 
 import ptmcad

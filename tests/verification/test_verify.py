@@ -7,13 +7,13 @@ from __future__ import annotations
 import json
 import random
 from collections.abc import Callable, Iterator
-from dataclasses import replace
 from fractions import Fraction
 from typing import Any
 
 import pytest
 from forger.consistency import put
 from forger.judge import violation
+from support.replacing import replace
 from support.shipped_records import EXACT
 
 import ptmcad

@@ -6,7 +6,6 @@ from __future__ import annotations
 
 import random
 from collections.abc import Callable
-from dataclasses import replace
 from fractions import Fraction
 from functools import cache
 from itertools import product
@@ -23,6 +22,7 @@ from support.free_length_equilibria import free_length_equilibria
 from support.maps import CONFIGS, once_per_run
 from support.paper_energy import NAMES
 from support.records import TRUSS
+from support.replacing import replace
 
 import ptmcad
 from ptmcad.answer.regionmap import RegionMap, Solution

@@ -4,7 +4,6 @@ false ones are not.
 
 from __future__ import annotations
 
-from dataclasses import replace
 from fractions import Fraction
 from functools import cache
 from typing import Any
@@ -16,6 +15,7 @@ from flint import arb
 pytest.importorskip("numba")
 
 from support.counting import MIDDLE, claims_of
+from support.replacing import replace
 
 import ptmcad
 from ptmcad.answer.regionmap import RegionMap

@@ -4,12 +4,12 @@ rejected.
 
 from __future__ import annotations
 
-from dataclasses import replace
 from fractions import Fraction
 from functools import cache
 from typing import Any
 
 import pytest
+from support.replacing import replace
 
 import ptmcad
 from ptmcad.answer.family import FamilyMap

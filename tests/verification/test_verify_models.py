@@ -6,7 +6,6 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from copy import deepcopy
-from dataclasses import replace
 from functools import cache, partial
 from typing import Any
 
@@ -16,6 +15,7 @@ from forger.consistency import drop, put
 from forger.judge import judged, violation
 from support.maps import once_per_run
 from support.random_models import random_mechanism, random_system
+from support.replacing import replace
 
 import ptmcad
 from ptmcad.answer.regionmap import HARMLESS, Cell, Component, Kind, RegionMap

@@ -7,9 +7,9 @@ The predicate: the first bar of the paper's mechanism points upwards.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import replace
 
 import pytest
+from support.replacing import replace
 
 import ptmcad
 from ptmcad.answer.regionmap import RegionMap

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from fractions import Fraction
 from typing import Any
 
 import pytest
 
 pytest.importorskip("numba")
+
+from support.replacing import replace
 
 import ptmcad
 from ptmcad.answer.regionmap import RegionMap

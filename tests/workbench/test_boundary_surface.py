@@ -4,7 +4,6 @@ change.
 
 from __future__ import annotations
 
-from dataclasses import replace
 from fractions import Fraction
 from functools import cache
 from math import lcm, pi, prod, sqrt
@@ -14,6 +13,7 @@ import numpy as np
 import pytest
 from flint import fmpz_poly
 from support.few import few
+from support.replacing import replace
 
 import ptmcad
 from ptmcad.algebra.real_roots import has_root_between, squarefree_part

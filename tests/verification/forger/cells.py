@@ -5,10 +5,11 @@ some are not.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import replace
 from fractions import Fraction
 from functools import partial
 from itertools import combinations, permutations
+
+from support.replacing import replace
 
 from forger.consistency import (
     Alteration,

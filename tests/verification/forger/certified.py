@@ -12,11 +12,12 @@ random places may find that, and it need not be false.
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import replace
 from fractions import Fraction
 from functools import partial
 from itertools import combinations
 from typing import Any
+
+from support.replacing import replace
 
 from forger.consistency import Alteration, drop, put, swapped, window_area
 from ptmcad.answer.regionmap import Cell, RegionMap, Status

@@ -9,10 +9,11 @@ between nothing and the window's, which no check of areas can refute.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import replace
 from fractions import Fraction
 from itertools import count, pairwise
 from typing import Any
+
+from support.replacing import replace
 
 from ptmcad.answer.regionmap import (
     Adjacency,

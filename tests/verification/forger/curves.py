@@ -5,10 +5,11 @@ walls.
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import replace
 from fractions import Fraction
 from functools import partial
 from itertools import combinations
+
+from support.replacing import replace
 
 from forger.consistency import (
     Alteration,

@@ -8,8 +8,9 @@ given the first one's; so is a cell whose sample lies on a missing curve.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
 from fractions import Fraction
+
+from support.replacing import replace
 
 from forger.consistency import NO_AREAS, settled, with_plan
 from ptmcad.answer.regionmap import Component, RegionMap

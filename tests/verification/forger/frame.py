@@ -5,11 +5,12 @@ to each other.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import replace
 from fractions import Fraction
 from functools import partial
 from itertools import combinations
 from typing import Any
+
+from support.replacing import replace
 
 from forger.consistency import (
     NO_AREAS,

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import replace
 from fractions import Fraction
 from functools import partial
 
 from support.counting import system_of
+from support.replacing import replace
 
 from forger.consistency import (
     NO_AREAS,

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import replace
 from fractions import Fraction
 from functools import cache, partial
 from typing import Any
 
 import pytest
 from flint import arb, arb_poly, arb_series, ctx, fmpq
+from support.replacing import replace
 
 from forger.consistency import drop, put, swapped, with_plan
 from forger.maps import named

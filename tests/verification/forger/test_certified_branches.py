@@ -8,7 +8,6 @@ at.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import replace
 from fractions import Fraction
 from functools import cache, partial
 from typing import Any
@@ -17,6 +16,7 @@ import pytest
 from flint import ctx
 from support.counting import claims_of
 from support.paper_energy import NAMES
+from support.replacing import replace
 
 import ptmcad
 from forger.consistency import put

@@ -8,11 +8,11 @@ from __future__ import annotations
 
 import random
 from collections.abc import Callable
-from dataclasses import replace
 from fractions import Fraction
 
 import pytest
 from support.random_slices import NUMBERS
+from support.replacing import replace
 from support.shipped_records import EXACT
 
 import ptmcad
