@@ -197,7 +197,7 @@ class _SurfaceSearch:
                 (0.5, _value(slab, 0.5, slab))
             ]
             for start, end in pairwise([(0.0, slab[0]), *stated, (1.0, slab[1])]):
-                self._push(heap, slab, *start, *end)
+                self._push(heap, slab, (*start, *end))
         while heap:
             gap = heappop(heap)[2]
             self.members.report("members of the surface", len(self._known), self.max_members)
@@ -207,7 +207,7 @@ class _SurfaceSearch:
                 self._close(gap)
             else:
                 for half in gap.halves:
-                    self._push(heap, gap.slab, *half)
+                    self._push(heap, gap.slab, half)
 
     def runs(self) -> list[Joined]:
         """Members in increasing order that sheets join each to the next."""
@@ -244,15 +244,10 @@ class _SurfaceSearch:
                 self.unresolved += 1
 
     def _push(
-        self,
-        heap: list[_Entry],
-        slab: Slab,
-        start: float,
-        low: Fraction,
-        end: float,
-        high: Fraction,
+        self, heap: list[_Entry], slab: Slab, ends: tuple[float, Fraction, float, Fraction]
     ) -> None:
-        """Enter the gap between two members."""
+        """Enter the gap between two members, each by its place and value."""
+        start, low, end, high = ends
         middle = (start + end) / 2
         value = _value(slab, middle, (low, high))
         deviation = self._deviation(low, value, high)

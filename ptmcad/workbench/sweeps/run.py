@@ -93,13 +93,7 @@ def sweep(
         require("distributed", key="--scheduler")
     place = Path(f"{question.name}-sweep") if folder is None else Path(folder)
     with opened(place) as index:
-        facts = {
-            "name": question.name,
-            "names": json.dumps(question.names, ensure_ascii=False),
-            "members": str(len(question)),
-            "version": __version__,
-        }
-        index.claim(facts, _asked(question, wanted))
+        index.claim(_facts(question), _asked(question, wanted))
         index.check(question.names)
         run = _Run(question, index, retries, progress, timeout)
         try:
@@ -167,6 +161,16 @@ def processors() -> int:
     """How many this process may use."""
     affinity = getattr(os, "sched_getaffinity", None)
     return len(affinity(0)) if affinity is not None else os.cpu_count() or 1
+
+
+def _facts(question: Sweeping) -> dict[str, str]:
+    """What the index says of the sweep as a whole."""
+    return {
+        "name": question.name,
+        "names": json.dumps(question.names, ensure_ascii=False),
+        "members": str(len(question)),
+        "version": __version__,
+    }
 
 
 def _asked(question: Sweeping, wanted: Wanted) -> str:
