@@ -80,6 +80,35 @@ def pose_paths(
     Of a system that does not say what a stable solution is, all solutions are followed.
     """
     criterion, begin = slice.model.criterion, number_for("--path", start)
+    family, critical, here = _solved(slice, along, at, begin)
+    stable = [k for k, pose in enumerate(here, 1) if criterion.works(pose.stable)]
+    if number is not None and number not in stable:
+        what = f"{len(stable)} {criterion.poses}"
+        raise ConfigError(
+            f"{number} is none of the {what} at {along} = {begin}, counted from 1", key="--pose"
+        )
+    found = []
+    chosen = stable if number is None else [number]
+    for done, k in enumerate(chosen):
+        if family.lengths and progress is not None:
+            progress("paths: pose", done, len(chosen))
+        with within_doubles(slice):
+            found.append(_path(family, critical, begin, k, here[k - 1]))
+    line = family.line
+    rests = moved(slice.model, line.parameters)
+    return PosePaths(slice.name, slice.model, line.along, line.at, begin, tuple(found), rests)
+
+
+def _solved(
+    slice: Slice, along: str, at: Mapping[str, Any], begin: Fraction
+) -> tuple[LineSystem, tuple[Change, ...], tuple[Pose, ...]]:
+    """The line's system, its critical values in the window, and the solutions at the start.
+
+    Raises
+    ------
+    ConfigError
+        As `pose_paths` does.
+    """
     axis = slice.axes[varying_axis(slice, along, at)[0]]
     if not axis.holds(begin):
         raise ConfigError(
@@ -102,21 +131,7 @@ def pose_paths(
         raise ConfigError(
             f"{along} = {begin} is a critical value{doubt}: start beside it", key="--path"
         )
-    stable = [k for k, pose in enumerate(here, 1) if criterion.works(pose.stable)]
-    if number is not None and number not in stable:
-        what = f"{len(stable)} {criterion.poses}"
-        raise ConfigError(
-            f"{number} is none of the {what} at {along} = {begin}, counted from 1", key="--pose"
-        )
-    found = []
-    chosen = stable if number is None else [number]
-    for done, k in enumerate(chosen):
-        if family.lengths and progress is not None:
-            progress("paths: pose", done, len(chosen))
-        with within_doubles(slice):
-            found.append(_path(family, critical, begin, k, here[k - 1]))
-    rests = moved(slice.model, line.parameters)
-    return PosePaths(slice.name, slice.model, axis, line.at, begin, tuple(found), rests)
+    return family, critical, here
 
 
 def _changes_on(slice: Slice, line: Line, *, enclosed: bool) -> tuple[Change, ...]:
