@@ -12,6 +12,7 @@ the logarithm of the number of rectangles. All parts of one depth are cut at onc
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 
@@ -187,17 +188,24 @@ def subdivide(rectangles: Integers, steps: int) -> Subdivision:
 
         low, high = np.where(upright[owner], left, bottom), np.where(upright[owner], right, top)
         halves = (low < line[owner], high > line[owner])
-        numbers = [np.bincount(owner[half], minlength=len(met)) for half in halves]
-        counts = np.stack(numbers, axis=1).ravel()
-        starts = np.cumsum(counts) - counts
-        following = np.empty(int(counts.sum()), dtype=np.int64)
-        for side, half in enumerate(halves):
-            of, rank = repeated(numbers[side])
-            following[starts[2 * of + side] + rank] = members[half]
-        members = following
+        counts, members = _in_halves(members, owner, halves, len(met))
         met = np.flatnonzero(counts)
         counts = counts[met]
     return Subdivision(steps, *(np.concatenate(column) for column in zip(*depths, strict=True)))
+
+
+def _in_halves(
+    members: Integers, owner: Integers, halves: Sequence[NDArray[np.bool_]], parts: int
+) -> tuple[Integers, Integers]:
+    """How many members each half of each part has, the lower one first, and these, half after half."""
+    numbers = [np.bincount(owner[half], minlength=parts) for half in halves]
+    counts = np.stack(numbers, axis=1).ravel()
+    starts = np.cumsum(counts) - counts
+    following = np.empty(int(counts.sum()), dtype=np.int64)
+    for side, half in enumerate(halves):
+        of, rank = repeated(numbers[side])
+        following[starts[2 * of + side] + rank] = members[half]
+    return counts, following
 
 
 def _next_to_the_middle(

@@ -36,7 +36,7 @@ class FactoredProblem:
     ----------
     factors : of the equations, positive in the open window.
     equations : the smooth parts over their factors.
-    springs : what writes those with a free length.
+    writers : of the springs with a free length.
     turns : directions in which bodies turn together; none are used of closed loops, and where
         springs are pushes.
     pushes : of the problem, with their weights over the factors.
@@ -45,7 +45,7 @@ class FactoredProblem:
     problem: Problem
     factors: tuple[Expression, ...]
     equations: tuple[TrigonometricPolynomial, ...]
-    springs: tuple[Writer, ...]
+    writers: tuple[Writer, ...]
     turns: tuple[Turn, ...]
     pushes: tuple[Push, ...]
 

@@ -167,7 +167,7 @@ def chart(
     scales = tuple(expression_formula(graph, g) for g in exact.factors)
     phi = None if short is None else graph.variable(FIRST + len(size))
     springs = tuple(
-        write(unknowns, phi if k == short else None) for k, write in enumerate(exact.springs)
+        write(unknowns, phi if k == short else None) for k, write in enumerate(exact.writers)
     )
     slopes = [[f.derivative(j).formula(unknowns) for j in size] for f in exact.equations]
     for push in exact.pushes:
