@@ -32,7 +32,7 @@ from ptmcad.algebra.groebner import grevlex_key, powers_of, raised
 from ptmcad.algebra.membership import RationalPolynomial, Rules
 from ptmcad.algebra.polynomials import Monomial, integral
 from ptmcad.algebra.quotient_algebra import border_of, divided, standard_monomials
-from ptmcad.algebra.real_roots import RealRoot, refine
+from ptmcad.algebra.real_roots import RealRoot, refine, sign_at
 from ptmcad.errors import LimitReached
 
 
@@ -336,8 +336,8 @@ def unknowns_in_balls(
     return at
 
 
-_START_BITS = 16
-"""To which a root is refined before Newton's method."""
+_HALVINGS = 12
+"""How often an interval is halved before it is refined as fast as a cluster of roots needs."""
 
 
 def newton_ball(value: arb_poly, slope: arb_poly, root: RealRoot) -> arb:
@@ -345,25 +345,47 @@ def newton_ball(value: arb_poly, slope: arb_poly, root: RealRoot) -> arb:
     operator.
 
     With a root in X and 0 not in p'(X), it lies in m - p(m) / p'(X) for any m in X, by the mean value
-    theorem (Moore, Interval Analysis, 1966). Where this proves no narrow ball the root is refined by
-    its own means.
+    theorem (Moore, Interval Analysis, 1966).
 
     Parameters
     ----------
     value, slope : the root's polynomial and its derivative in balls of that precision.
     """
-    size = abs(root.middle) + 1
-    near = refine(root, size / 2**_START_BITS)
-    ball = near.ball
-    while not near.is_rational and not (steepness := slope(ball)).contains(0):
+    low, high = root.low, root.high
+    if low == high:
+        return arb(low)
+    rising = sign_at(root.polynomial, high) > 0
+    for _ in range(_HALVINGS):
+        found = _narrowed(value, slope, arb(low).union(arb(high)))
+        if found is not None:
+            return found
+        middle = (low + high) / 2
+        there = value(arb(middle))
+        if there > 0 if rising else there < 0:
+            high = middle
+        elif there < 0 if rising else there > 0:
+            low = middle
+        else:  # the root, or too near to it to tell
+            break
+    # by its own means as far as the ball is to be narrow, where Newton's would not be at this
+    # precision
+    return refine(root, fmpq(1, 2 ** (ctx.prec - 8)) * (abs(root.middle) + 1)).ball
+
+
+def _narrowed(value: arb_poly, slope: arb_poly, ball: arb) -> arb | None:
+    """The root of a ball in one of at most the square root of the precision's unit; None when
+    that fails.
+    """
+    while True:
+        steepness = slope(ball)
+        if steepness.contains(0):
+            return None
         middle = ball.mid()
         found = middle - value(middle) / steepness
         if not 2 * found.rad() < ball.rad():
-            if ball.rad() * 2 ** (ctx.prec // 2) < abs(middle) + 1:
-                return ball
-            break
+            small = ball.rad() * 2 ** (ctx.prec // 2) < abs(middle) + 1
+            return ball if small else None
         ball = found
-    return refine(near, size / fmpq(2) ** (ctx.prec - 8)).ball
 
 
 def hermite_matrix(algebra: FibreAlgebra, weight: fmpq_mat) -> fmpq_mat:
