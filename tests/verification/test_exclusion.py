@@ -236,18 +236,14 @@ def test_a_box_that_is_halved_after_all_keeps_its_second_half(
     """Of 32 boxes two are tried with all formulas; the others are stuck by some, and halved by all."""
     calls = []
 
-    def looked(
-        _system: Any, _tape: Any, _pieces: Any, boxes: Any, outcome: Any, rest: Any, _told: Any
-    ) -> None:
+    def looked(_system: Any, _pieces: Any, boxes: Any, outcome: Any, rest: Any, _told: Any) -> None:
         calls.append(len(boxes))
         outcome[:] = running.HALVED if len(calls) == 3 else running.STUCK
         if len(calls) == 3:
             rest[:] = boxes
             boxes[:, 0, 1] = rest[:, 0, 0] = 0.5
 
-    system: Any = SimpleNamespace(
-        zero=(0,), not_negative=(), tape=None, compiled=lambda _smallest: None
-    )
+    system: Any = SimpleNamespace(zeros=(0,), signs=(), compiled=lambda _smallest: None)
     monkeypatch.setattr(running, "look", looked)
     monkeypatch.setattr(running, "LEARNT_FROM", 0)
     start = np.tile([[0.0, 1.0], [0.0, 1.0]], (32, 1, 1))
