@@ -182,11 +182,14 @@ def _collected(
 
 
 def mapped(part: Any, of: Callable[[TrigonometricPolynomial], Any]) -> Any:
-    """Tuples and data classes, nested in any way, with something else in place of each polynomial."""
+    """Tuples, named ones too, and data classes, nested in any way, with something else in place of
+    each polynomial.
+    """
     if isinstance(part, TrigonometricPolynomial):
         return of(part)
     if isinstance(part, tuple):
-        return tuple(mapped(each, of) for each in part)
+        made: Any = getattr(part, "_make", tuple)
+        return made(mapped(each, of) for each in part)
     if is_dataclass(part) and not isinstance(part, type | Expression):
         return replace(part, **{f.name: mapped(getattr(part, f.name), of) for f in fields(part)})
     return part
