@@ -58,8 +58,9 @@ def check_enclosed(found: Entry, slice: Slice) -> str:
             number, unknown = number + is_known, unknown + (not is_known)
             for name in said.keys() & true.keys():
                 if said[name] != (list(index) if isinstance(index := true[name], tuple) else index):
+                    counts = ", ".join(f"{count} {n}" for count, n in said.items())
                     raise Violation(
-                        f"{said} are said to be at {shortest_text(at)}; there are {there}"
+                        f"{counts} is said to be at {shortest_text(at)}; there are {there}"
                     )
     checked = f"{number} points"
     if unknown or not number:

@@ -291,9 +291,10 @@ def test_wrong_options(options: dict[str, Any]) -> None:
 
 
 @pytest.mark.parametrize(
-    "stage", ["stages.discriminant_variety", "decomposition.project", "regionareas.region_areas"]
+    "stage",
+    ["stages.discriminant_variety", "cad.decomposition.project", "areas.regionareas.region_areas"],
 )
-@pytest.mark.slow_cases("stages.discriminant_variety", "regionareas.region_areas")
+@pytest.mark.slow_cases("stages.discriminant_variety", "areas.regionareas.region_areas")
 def test_a_limit_leaves_the_best_map_so_far(stage: str, monkeypatch: pytest.MonkeyPatch) -> None:
     """Whatever was reached is a partial map that can be written, read and asked, and gives no
     undecided count.
@@ -316,7 +317,7 @@ def test_a_limit_leaves_the_best_map_so_far(stage: str, monkeypatch: pytest.Monk
     assert RegionMap.from_json(partial.to_json()) == partial
     assert len(partial.table().splitlines()) == 5
     place = partial.locate(k=100, rho="7/10")
-    if stage == "decomposition.project":
+    if stage == "cad.decomposition.project":
         assert (place.status.value, place.stable) == ("undecided", None)
     else:
         assert place == expected

@@ -667,7 +667,7 @@ def test_without_numba_what_needs_it_is_not_checked(monkeypatch: pytest.MonkeyPa
     """Poses and maps with free lengths need an optional package, and their claims say so where it
     is missing.
     """
-    monkeypatch.setattr(claim, "find_spec", lambda _name: None)
+    monkeypatch.setattr("ptmcad.extras.find_spec", lambda _name: None)
     assert [n for n, c in CLAIMS.items() if c.get("needs")] == [
         "5.2-spurious", "5.2-six", "5.2-acceptable", "5.2-difficult", "c-six-free",
     ]  # fmt: skip
