@@ -28,7 +28,7 @@ from support.maps import once_per_run
 from support.paper_energy import Bent, alike, bent
 
 from ptmcad.answer.regionmap import Merge, Status
-from ptmcad.studies.paper import claim, free, maps, statements
+from ptmcad.studies.paper import free, maps, statements
 from ptmcad.studies.paper.claim import TEXTS, Claim, Verdict, judge, texts
 from ptmcad.studies.paper.maps import FIGURES, region_map
 from ptmcad.studies.paper.squaring import squared
