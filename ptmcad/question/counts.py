@@ -88,7 +88,7 @@ class Predicate(NamedTuple):
         or none with a free length.
     of_pose : numbers of a `Pose` that are positive exactly where the margins are.
     head, note, tally : above its column of a table of poses, its meaning, and what follows the
-        number of poses at which it holds.
+        number of poses at which it holds; all empty where poses say nothing of it.
     is_always_stored : whether each certified map has its number, or null where that was not asked
         for: so it has been since that form of documents was made. Of others a map has the number
         that its count is of.
@@ -98,11 +98,11 @@ class Predicate(NamedTuple):
     is_symmetric: bool
     needs_free_lengths: bool
     of_systems: str
-    without_free_lengths: str
-    of_pose: Callable[[Any], Sequence[Enclosure]]
-    head: str
-    note: str
-    tally: str
+    without_free_lengths: str = ""
+    of_pose: Callable[[Any], Sequence[Enclosure]] = lambda _pose: ()
+    head: str = ""
+    note: str = ""
+    tally: str = ""
     is_always_stored: bool = False
 
 
@@ -213,6 +213,8 @@ PREDICATES = {
     count.value: kind.predicate for count, kind in KINDS.items() if kind.predicate is not None
 }
 """Those of the table by the names of their counts."""
+POSE_COLUMNS = {name: predicate for name, predicate in PREDICATES.items() if predicate.head}
+"""Those of which poses and their tables say whether they hold."""
 
 
 def further_names(count: Count) -> tuple[str, ...]:

@@ -14,7 +14,7 @@ from ptmcad.answer.regionmap import Status
 from ptmcad.answer.words import counted, listed, noun, of_what, untold
 from ptmcad.model import Model, built_in
 from ptmcad.model.work import foreign, loads_at
-from ptmcad.question.counts import PREDICATES, Predicate
+from ptmcad.question.counts import POSE_COLUMNS, Predicate
 from ptmcad.question.slice import merged
 from ptmcad.show.columns import WIDTH, aligned, wrapped
 from ptmcad.show.units import declared_units
@@ -170,7 +170,7 @@ def _summary(poses: Poses) -> list[str]:
 
 def _columns(poses: Poses) -> dict[str, Predicate]:
     """Those of predicates, where it is asked whether these hold."""
-    return PREDICATES if any(pose.has_predicates for pose in poses.equilibria) else {}
+    return POSE_COLUMNS if any(pose.has_predicates for pose in poses.equilibria) else {}
 
 
 def _blocks(poses: Poses, digits: int) -> Iterator[list[list[str]]]:

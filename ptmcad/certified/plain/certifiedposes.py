@@ -34,7 +34,7 @@ from ptmcad.formulas.tape import Tape, record
 from ptmcad.model import Mechanism, Model, ptm
 from ptmcad.model.compile import CompiledSystem, compiled_with
 from ptmcad.model.fourbars import flat_everywhere
-from ptmcad.question.counts import PREDICATES, Count
+from ptmcad.question.counts import POSE_COLUMNS, Count
 from ptmcad.question.domain import proved
 from ptmcad.question.slice import Axis, Slice
 from ptmcad.text.balls import bounded, enclosed
@@ -330,7 +330,7 @@ def with_further(pose: Pose) -> Pose:
     """The pose with the predicates that hold or not; without a potential nothing says what is
     stable.
     """
-    columns = PREDICATES if pose.energy is not None else {}
+    columns = POSE_COLUMNS if pose.energy is not None else {}
     found = {name: _holds(pose.stable, column.of_pose(pose)) for name, column in columns.items()}
     return replace(
         pose, further={name: holds for name, holds in found.items() if holds is not None}

@@ -14,7 +14,7 @@ from typing import Any
 
 from ptmcad.answer.poses import MAX_DIGITS, Pose, Poses, Spring, TorsionSpring
 from ptmcad.answer.regionmap import Status
-from ptmcad.question.counts import PREDICATES
+from ptmcad.question.counts import POSE_COLUMNS
 from ptmcad.question.slice import check_names
 from ptmcad.show.document.exactnumbers import merged
 from ptmcad.show.document.slicedocument import MODEL, UNITS, VERSIONS
@@ -101,7 +101,9 @@ def poses_codec(digits: int) -> Codec[Poses]:
     )
     known: Known = {Fraction: exact, Enclosure: number}
     bare, free = (_pose(known, free) for free in (False, True))
-    pose: Codec[Pose] = either(next(iter(PREDICATES)), lambda pose: pose.has_predicates, free, bare)
+    pose: Codec[Pose] = either(
+        next(iter(POSE_COLUMNS)), lambda pose: pose.has_predicates, free, bare
+    )
     return record_of(
         Poses,
         {**known, Pose: pose._replace(schema=merged(bare.schema, free.schema))},
@@ -135,7 +137,10 @@ def _pose(known: Known, free: bool) -> Codec[Pose]:
         further=None,
         nodes=named(listed(known[Enclosure], 2), _name),
         **unless_default(Pose, "reals", "torsion", known=known),
-        **{name: Key(optional(TRUTH), entry_of="further") for name in (PREDICATES if free else ())},
+        **{
+            name: Key(optional(TRUTH), entry_of="further")
+            for name in (POSE_COLUMNS if free else ())
+        },
     )
 
 
