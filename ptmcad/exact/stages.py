@@ -63,8 +63,12 @@ class SliceProblem(NamedTuple):
 
     @property
     def reflections(self) -> list[Involution]:
-        """The involutions that map the window to itself and move some of its points."""
+        """The involutions that map the window to itself and move some of its points; none where the
+        count is by a predicate that symmetries do not keep.
+        """
         slice = self.slice
+        if not slice.count.kind.is_symmetric:
+            return []
         first, second = ((axis.low, axis.high) for axis in slice.axes)
         return [
             c

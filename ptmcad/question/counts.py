@@ -135,6 +135,11 @@ class CountKind(NamedTuple):
     needs: str = "stable"
     predicate: Predicate | None = None
 
+    @property
+    def is_symmetric(self) -> bool:
+        """Whether each symmetry of a model's energy keeps the number."""
+        return self.predicate is None or self.predicate.is_symmetric
+
 
 def _longer_than_free(mechanism: Mechanism) -> Iterator[Margin[Tree]]:
     """|d|^2 - l0^2 of each spring, d being the vector between its ends: of the sign of |d| - l0, as

@@ -26,12 +26,12 @@ def heights(mechanism: Mechanism) -> Iterator[Margin]:
 
 ENGINES = [
     ("fig4", "auto"), ("fig4", "exact"), ("horizontal", "exact"), ("three-cables", "auto"), ("four-bar", "auto"),
-    ("four-bar-free", "auto"),
+    ("four-bar-free", "auto"), ("forces", "exact"),
 ]  # fmt: skip
 
 
 @pytest.mark.parametrize(("record", "engine"), ENGINES)
-@pytest.mark.fast_cases("fig4-auto", "horizontal-exact", "four-bar-auto")
+@pytest.mark.fast_cases("fig4-auto", "horizontal-exact", "four-bar-auto", "forces-exact")
 def test_stable_equilibria_above_the_ground(
     record: str, engine: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:

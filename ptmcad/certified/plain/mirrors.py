@@ -86,8 +86,7 @@ def halving(slice: Slice) -> Involution | None:
     None where the count is by a predicate that symmetries do not keep; or by one of whose margins
     one is a sum of squares, as what vanishes in its place is kept as that sum only.
     """
-    predicate = slice.count.kind.predicate
-    if predicate is not None and not predicate.is_symmetric:
+    if not slice.count.kind.is_symmetric:
         return None
     if any(condition.squares for condition in problem_of(slice).further):
         return None
