@@ -257,25 +257,28 @@ def poles(
     ----------
     suspects : each is found if and only if there is a pole.
     remarks : of curves that no count depends on: found only if there is a pole and the line shows
-        it, as it does but for a coincidence of zeros.
+        it, as it does but for a coincidence of zeros. Those that do not meet the line, such as one
+        of the axes' difference alone, are looked for as the others are.
     """
     found: list[Coefficient] = []
     x, y = algebra.one.context().gens()
+    line, plane = (x, x + LINE), (x, y)
+    everywhere = (*suspects, *(f for f in remarks if f.compose(*line).is_constant()))
     for k in coordinates:
         vectors = [algebra.table[raised(m, k)] for m in algebra.basis]
         rows, scales = [row for row, _ in vectors], [denominator for _, denominator in vectors]
-        for line, asked in (((x, x + LINE), (*suspects, *remarks)), ((x, y), suspects)):
-            on_line = [scale.compose(*line) for scale in scales]
+        for places, asked in ((line, (*suspects, *remarks)), (plane, everywhere)):
+            on_places = [scale.compose(*places) for scale in scales]
             left = [f for f in asked if f not in found and (_least_order(vectors, f) or 0) < 0]
             # a line on which a denominator vanishes shows nothing
-            if not left or any(scale.is_zero() for scale in on_line):
+            if not left or any(scale.is_zero() for scale in on_places):
                 continue
             coefficients = characteristic(
-                [[c.compose(*line) for c in row] for row in rows], on_line
+                [[c.compose(*places) for c in row] for row in rows], on_places
             )
             for f in left:
                 power = f ** sum(multiplicity(scale, f) for scale in scales)
-                _, divisor = power.compose(*line).primitive()
+                _, divisor = power.compose(*places).primitive()
                 if any(not (c % divisor).is_zero() for c in coefficients):
                     found.append(f)
     return found

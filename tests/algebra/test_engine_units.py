@@ -321,6 +321,14 @@ def test_a_pole_that_the_line_does_not_show_is_found_in_the_plane() -> None:
     assert poles(algebra, [], (0,), [X]) == []
 
 
+def test_a_pole_on_a_curve_that_does_not_meet_the_line_is_found() -> None:
+    """The only root is 1/(x - y), which is constant on the line y = x + 1009."""
+    basis = groebner_basis([{(1,): X - Y, (0,): X**0}], (0,))
+    algebra = quotient_algebra(basis)
+    assert algebra is not None
+    assert poles(algebra, [], (0,), [X - Y]) == [X - Y]
+
+
 @pytest.mark.parametrize("name", ["fig2", "fig3", "fig4", "fig5-text"])
 @pytest.mark.slow_cases("fig5-text", "fig3", "fig4")
 def test_hermite_determinant_has_every_critical_component(name: str) -> None:

@@ -12,6 +12,7 @@ from support import oracle
 from support.maps import CONFIGS
 from support.structure import check_structure
 
+import ptmcad
 from ptmcad import RegionMap, classify, load, slice_from_mapping
 from ptmcad.ask.checking import check
 from ptmcad.errors import (
@@ -342,3 +343,15 @@ def test_plain_decimals_with_long_coefficients() -> None:
         <= Fraction("0.25e-60")
         <= min(r.area[1] for r in scaled.regions)
     )
+
+
+def test_equal_eigenvalues_with_another_that_is_rational() -> None:
+    """The Hessian is diag(0, 0, 1), of which FLINT's enclosures separate nothing."""
+    system = ptmcad.System(
+        parameters={"a": {}, "b": {}},
+        unknowns={"x": "real", "y": "real", "z": "real"},
+        potential="x^4/4 - a*x^2/2 + y^4/4 - b*y^2/2 + z^2/2",
+    )
+    (pose,) = ptmcad.solve(model=system, a=0, b=0).equilibria
+    assert [value.exact for value in pose.eigenvalues] == [0, 0, 1]
+    assert pose.multiplicity == 9
