@@ -12,7 +12,7 @@ from itertools import combinations
 from math import isqrt
 from typing import NamedTuple
 
-from flint import acb_mat, arb, fmpq
+from flint import acb_mat, arb, arb_mat, ctx, fmpq
 
 from ptmcad.algebra.number_field import FieldElement, rational_roots
 from ptmcad.algebra.plane_determinants import laplace
@@ -92,17 +92,14 @@ def eigenvalues(
         return tuple(number(entry) for row in stiffness.hessian for entry in row)
     known = [Fraction(0)] * stiffness.nullity
     known += [root for root, multiplicity in stiffness.rationals for _ in range(multiplicity)]
-    if len(known) == size:  # equal ones and others at once are more than FLINT separates
+    if len(known) == size:
         return tuple(RealNumber(value, ball_of(value)) for value in sorted(known))
     unknown = (RealNumber(None, arb.nan()),) * size
-    entries = [[number(entry).ball for entry in row] for row in stiffness.hessian]
-    try:
-        found = acb_mat(size, size, [x for row in entries for x in row]).eig(multiple=True)
-    except ValueError:  # the balls are too wide to separate the eigenvalues' clusters
-        return unknown
-    balls = sorted((value.real for value in found), key=lambda ball: float(ball.mid()))
+    balls = _in_order(
+        arb_mat(size, size, [number(entry).ball for row in stiffness.hessian for entry in row])
+    )
     near_zero = [ball for ball in balls if ball.contains(0)]
-    if len(near_zero) != stiffness.nullity:
+    if len(balls) < size or len(near_zero) != stiffness.nullity:
         return unknown
     values = [
         RealNumber(Fraction(0), arb(0)) if ball.contains(0) else RealNumber(None, ball)
@@ -115,6 +112,30 @@ def eigenvalues(
         for k in near:
             values[k] = RealNumber(root, ball_of(root))
     return tuple(values)
+
+
+def _in_order(matrix: arb_mat) -> list[arb]:
+    """The eigenvalues of a symmetric matrix, the smallest first; none where its balls are too wide.
+
+    FLINT does not separate equal ones from others. Then a small diagonal matrix is added: it moves
+    the k-th eigenvalue by its norm at most (Weyl; Horn & Johnson, Matrix Analysis, corollary
+    4.3.15).
+    """
+    size = matrix.nrows()
+    try:
+        found = acb_mat(matrix).eig(multiple=True)
+        moved = arb(0)
+    except ValueError:
+        steps = [arb(k * k + 1) * arb(2) ** (-ctx.prec // 2) for k in range(size)]
+        shift = arb_mat(
+            size, size, [steps[i] if i == j else 0 for i in range(size) for j in range(size)]
+        )
+        try:
+            found = acb_mat(matrix + shift).eig()
+        except ValueError:
+            return []
+        moved = arb(0, steps[-1])
+    return sorted((value.real + moved for value in found), key=lambda ball: ball.mid())
 
 
 def square_root(square: RealNumber) -> RealNumber:

@@ -68,3 +68,14 @@ def test_rational_eigenvalues_are_exact_with_their_multiplicity(
         exact = [value.low for value in pose.eigenvalues if value.low == value.high]
         assert exact == rational and len(pose.eigenvalues) == 3
         assert all(one.low <= other.high for one, other in pairwise(pose.eigenvalues))
+
+
+def test_equal_irrational_eigenvalues_beside_another_are_enclosed() -> None:
+    found = solved(potential("x^3/3 - a*x + y^3/3 - a*y + z^2/2 - b*z"), a="2", b="0").equilibria
+    assert len(found) == 4
+    near = Fraction(1, 10**8)
+    for pose in found:
+        x, y, _ = pose.reals  # the eigenvalues are 2 x, 2 y and 1, and x and y square roots of 2
+        for value, there in zip(pose.eigenvalues, sorted([2 * x.low, 2 * y.low, 1]), strict=True):
+            assert value.low - near < there < value.high + near
+        assert 1 in [value.low for value in pose.eigenvalues if value.low == value.high]
