@@ -1,8 +1,9 @@
 """Polynomials over Q in the two axes: their irreducible factors, and discriminants and resultants with
 respect to v of those in Z[u, v].
 
-Guarantee: exact. (The decomposition interpolates modulo primes; see `ptmcad.algebra.resultants`,
-which is not used here.)
+Guarantee: exact. Resultants are interpolated over Z, by as many values as Bezout's bounds ask for.
+(The decomposition interpolates modulo primes; see `ptmcad.algebra.resultants`, which is not used
+here.)
 """
 
 from __future__ import annotations
@@ -12,7 +13,7 @@ from fractions import Fraction
 from functools import lru_cache
 from math import lcm
 
-from flint import Ordering, fmpq_mpoly, fmpq_mpoly_ctx, fmpz_poly
+from flint import Ordering, fmpq_mpoly, fmpq_mpoly_ctx, fmpz, fmpz_poly
 
 from ptmcad.text.flint_numbers import from_fraction
 from ptmcad.text.plane import PlanePolynomial
@@ -57,24 +58,29 @@ def discriminant(p: Terms) -> fmpz_poly:
 
 @lru_cache(maxsize=256)
 def resultant(p: Terms, q: Terms) -> fmpz_poly:
-    """The resultant of p and q with respect to v, up to sign, by subresultants (Brown and Traub)."""
-    a, b = sorted((_rows(p), _rows(q)), key=len, reverse=True)
-    g = h = fmpz_poly([1])
-    while len(b) > 1:
-        drop, rest = len(a) - len(b), a
-        for _ in range(drop + 1):
-            *rest, top = rest
-            rest = [c * b[-1] for c in rest]
-            for k, c in enumerate(b[:-1], len(rest) + 1 - len(b)):
-                rest[k] -= top * c
-        while rest and not rest[-1]:
-            rest.pop()
-        if not rest:
-            return fmpz_poly([0])
-        divisor = g * h**drop
-        a, b, g = b, [c // divisor for c in rest], b[-1]
-        h = g**drop // h ** (drop - 1) if drop else h
-    return b[0] ** (len(a) - 1) // h ** max(len(a) - 2, 0)
+    """The resultant of p and q with respect to v, up to sign, from its values at whole numbers."""
+    rows = _rows(p), _rows(q)
+    n, m = (len(one) - 1 for one in rows)
+    of_p, of_q = (max(int(c.degree()) for c in one) for one in rows)
+    whole_p, whole_q = (max(i + j for i, j, _ in one) for one in (p, q))
+    degree = min(m * of_p + n * of_q, whole_p * whole_q)
+    points: list[int] = []
+    values: list[fmpz] = []
+    u = 0
+    while len(points) <= degree:
+        left, right = (fmpz_poly([c(u) for c in one]) for one in rows)
+        if left.degree() == n and right.degree() == m:
+            points.append(u)
+            values.append(left.resultant(right))
+        u = -u if u > 0 else 1 - u
+    for step in range(1, degree + 1):
+        for k in range(degree, step - 1, -1):
+            # whole, as divided differences at whole numbers of a polynomial over Z are
+            values[k] = (values[k] - values[k - 1]) // (points[k] - points[k - step])
+    found = fmpz_poly([0])
+    while points:
+        found = found * fmpz_poly([-points.pop(), 1]) + values.pop()
+    return found
 
 
 def _rows(p: Terms) -> list[fmpz_poly]:
