@@ -119,14 +119,14 @@ def _in_order(matrix: arb_mat) -> list[arb]:
 
     FLINT does not separate equal ones from others. Then a small diagonal matrix is added: it moves
     the k-th eigenvalue by its norm at most (Weyl; Horn & Johnson, Matrix Analysis, corollary
-    4.3.15).
+    4.3.15). What parts them must be far larger than the precision, or FLINT does not isolate them.
     """
     size = matrix.nrows()
     try:
         found = acb_mat(matrix).eig(multiple=True)
         moved = arb(0)
     except ValueError:
-        steps = [arb(k * k + 1) * arb(2) ** (-ctx.prec // 2) for k in range(size)]
+        steps = [arb(k * k + 1) * arb(2) ** (-ctx.prec // 3) for k in range(size)]
         shift = arb_mat(
             size, size, [steps[i] if i == j else 0 for i in range(size) for j in range(size)]
         )

@@ -79,3 +79,24 @@ def test_equal_irrational_eigenvalues_beside_another_are_enclosed() -> None:
         for value, there in zip(pose.eigenvalues, sorted([2 * x.low, 2 * y.low, 1]), strict=True):
             assert value.low - near < there < value.high + near
         assert 1 in [value.low for value in pose.eigenvalues if value.low == value.high]
+
+
+def test_equal_eigenvalues_of_a_coupled_hessian_are_known_beside_irrational_ones() -> None:
+    """At x^2 = y^2 = 1, t = -1, z = 0 they are 2, 2 and the roots of 6."""
+    unknowns = {name: "real" for name in "xyzt"}
+    text = "t^3/3 - 2*t + t*(x^2 + y^2)/2 + x^4/4 + y^4/4 + z^2 + a*x + 0*b"
+    record = {
+        "system": {"unknowns": unknowns, "potential": text},
+        "axes": {"a": [-1, 1], "b": [0, 3]},
+    }
+    found = [
+        pose
+        for pose in solved(record, a="0", b="1").equilibria
+        if [abs(value.center) for value in pose.reals] == [1, 1, 0, 1]
+    ]
+    assert len(found) == 4
+    for pose in found:
+        least, *equal, greatest = pose.eigenvalues
+        assert [value.exact for value in equal] == [2, 2]
+        assert least.high < 0 and least.high**2 < 6 + Fraction(1, 10**8)
+        assert greatest.high**2 > 6 - Fraction(1, 10**8) and greatest.low**2 < 6
