@@ -24,7 +24,7 @@ from ptmcad.show.render.axes import symbol
 from ptmcad.show.render.colours import INK
 from ptmcad.show.render.inches import write_lines
 from ptmcad.show.render.printing import settings
-from ptmcad.show.render.rangeplate import (
+from ptmcad.show.render.rangepicture import (
     LEFT,
     RIGHT,
     SIZE,

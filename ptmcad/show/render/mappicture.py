@@ -31,8 +31,7 @@ from ptmcad.show.render.inches import Box, axes_at, write_lines
 from ptmcad.show.render.layout import SIDE, Layout, flowing, title_lines
 from ptmcad.show.render.legend import Entry, draw_legend, entries, hidden_entries
 from ptmcad.show.render.outline import Shapes, shapes
-from ptmcad.show.render.overlay import Overlay, draw_overlay, overlay_entries
-from ptmcad.show.render.painting import paint_map
+from ptmcad.show.render.painting import Overlay, draw_overlay, overlay_entries, paint_map
 from ptmcad.show.render.printing import save, settings
 from ptmcad.show.render.slivers import (
     MAX_ZOOMS,
