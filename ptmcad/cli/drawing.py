@@ -27,7 +27,7 @@ from ptmcad.text.parsing import share_for
 
 if TYPE_CHECKING:
     from ptmcad.answer.poses import Poses
-    from ptmcad.show.render.overlay import Measured
+    from ptmcad.show.render.painting import Measured
 
 
 def report_written(folder: Path, names: Iterable[str]) -> None:

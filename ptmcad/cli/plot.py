@@ -50,7 +50,7 @@ from ptmcad.text.numerals import equalities, shortest_text
 from ptmcad.text.parsing import number_for
 
 if TYPE_CHECKING:
-    from ptmcad.show.render.overlay import Agreement, Measured
+    from ptmcad.show.render.painting import Agreement, Measured
 
 Place = tuple[Fraction, Fraction]
 MAX_ROWS = 10_000
@@ -133,7 +133,7 @@ def measured(result: RegionMap, path: Path) -> tuple[tuple[Measured, ...], int]:
 
 def disagreements(result: RegionMap, found: Sequence[Measured]) -> list[str]:
     """The points that have another count than the map, in words; the first `MAX_TOLD` of them."""
-    from ptmcad.show.render.overlay import Agreement
+    from ptmcad.show.render.painting import Agreement
 
     others = [(at, label) for at, label, agreement in found if agreement is Agreement.OTHER]
     lines = []
@@ -163,7 +163,7 @@ def _count(result: RegionMap, text: str) -> str:
 
 def _agreement(result: RegionMap, at: Place, count: str) -> Agreement:
     """Whether the map has this count there; untold where it, or the file, has none."""
-    from ptmcad.show.render.overlay import Agreement
+    from ptmcad.show.render.painting import Agreement
 
     location = result.locate(**dict(zip(result.slice.axis_names, at, strict=True)))
     if (

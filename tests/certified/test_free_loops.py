@@ -27,7 +27,7 @@ from ptmcad.certified.plain.pointcounts import plain_counter
 from ptmcad.errors import ConfigError
 from ptmcad.formulas.graph import Formula
 from ptmcad.question.slice import Count
-from ptmcad.show.report.scripttape import tape
+from ptmcad.show.report.reportpage import tape
 from ptmcad.workbench.fields.quantityfield import field_of, request_of
 
 pytest.importorskip("numba")

@@ -31,7 +31,7 @@ from ptmcad.show.render.coveroutline import TOLERANCE
 from ptmcad.show.render.layout import LEFT, MARGIN, SIDE, TITLE_LINE
 from ptmcad.show.render.mappicture import MapDrawing, _zoomed
 from ptmcad.show.render.outline import shapes
-from ptmcad.show.render.polylines import simplified_polygons
+from ptmcad.show.render.polylines import simplified_polygon
 from ptmcad.show.render.view import View
 from ptmcad.show.report import page
 
@@ -146,7 +146,7 @@ def test_simplified_polygons_stay_near_and_keep_their_corners(
     corners: list[tuple[int, int]],
 ) -> None:
     points = np.array(corners, dtype=float) * 0.4 * TOLERANCE
-    few = simplified_polygons(points, np.array([len(points)]), TOLERANCE)[0]
+    few = simplified_polygon(points, TOLERANCE)
     assert {tuple(p) for p in few.tolist()} <= {tuple(p) for p in points.tolist()}
     if len(few) < 2:
         return
@@ -161,7 +161,7 @@ def test_simplified_polygons_stay_near_and_keep_their_corners(
 
 def test_a_triangle_stays_however_flat() -> None:
     flat = np.array([[0.0, 0.0], [9.0, 0.0], [4.0, 0.1]])
-    assert simplified_polygons(flat, np.array([len(flat)]), 1.5)[0].tolist() == flat.tolist()
+    assert simplified_polygon(flat, 1.5).tolist() == flat.tolist()
 
 
 # ------------------------------------------------------------------------------------------------------- the page

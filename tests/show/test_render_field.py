@@ -19,8 +19,13 @@ from support.replacing import replace
 import ptmcad
 from ptmcad.cli.plot import poses_at
 from ptmcad.cover.rectangles import Cover
-from ptmcad.show.render.fieldlines import MIN_PIECE, MIN_RING, contour_lines, pixel_edges
-from ptmcad.show.render.fieldpicture import field_figure
+from ptmcad.show.render.fieldpicture import (
+    MIN_PIECE,
+    MIN_RING,
+    contour_lines,
+    field_figure,
+    pixel_edges,
+)
 from ptmcad.show.render.printing import settings
 from ptmcad.show.style import MIN_FONT, styled
 

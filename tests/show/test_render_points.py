@@ -22,7 +22,7 @@ from ptmcad.errors import ConfigError
 from ptmcad.show.render.around import draw_around
 from ptmcad.show.render.labels import crosses
 from ptmcad.show.render.mappicture import MapDrawing
-from ptmcad.show.render.overlay import Agreement
+from ptmcad.show.render.painting import Agreement
 from ptmcad.show.render.printing import settings
 from ptmcad.show.style import MIN_FONT, PAGE_HEIGHT, PictureStyle, styled
 

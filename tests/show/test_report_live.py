@@ -27,7 +27,7 @@ from ptmcad.answer.regionmap import RegionMap
 from ptmcad.ask.fields.equations import state_at
 from ptmcad.show.report import page
 from ptmcad.show.report.mapsvg import SIDE, SLACK
-from ptmcad.show.report.scripttape import tape
+from ptmcad.show.report.reportpage import tape
 from ptmcad.workbench.fields.quantityfield import exact_at
 
 pytestmark = pytest.mark.skipif(chromium.PROGRAM is None, reason=chromium.MISSING)

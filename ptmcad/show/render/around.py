@@ -18,7 +18,7 @@ from matplotlib.text import Text
 
 from ptmcad.errors import ConfigError
 from ptmcad.show.drawable import no_drawing
-from ptmcad.show.render.blocks import LINE, Block, PointPoses, arranged, sized
+from ptmcad.show.render.blocks import LINE, Block, Plan, PointPoses, arranged, sized
 from ptmcad.show.render.colours import INK
 from ptmcad.show.render.fitting import larger
 from ptmcad.show.render.inches import stroke, write_lines
@@ -75,8 +75,7 @@ def _remedy(drawing: MapDrawing, points: Sequence[PointPoses]) -> str:
             break
         tried = styled(style, size=(wide, tall))
         try:
-            inner = sized(arranged(drawing.result, points, tried), tried)[1]
-            _map_beside(drawing._replace(style=inner, overlay=()))
+            _planned(drawing._replace(style=tried, overlay=()), points)
         except ConfigError:
             continue
         return f"give a size such as {wide + 0.005:.2f}x{tall + 0.005:.2f}in, or fewer points"
@@ -92,10 +91,7 @@ def _drawn(drawing: MapDrawing, points: Sequence[PointPoses]) -> DrawnMap:
         When poses, or the map beside them, have no room.
     """
     style = drawing.style
-    plan = arranged(drawing.result, points, style)
-    size, inner_style = sized(plan, style)
-    inner = drawing._replace(style=inner_style)
-    seen, layout = _map_beside(inner)
+    plan, size, inner, (seen, layout) = _planned(drawing, points)
     figure = Figure(figsize=size, dpi=drawing.dpi, facecolor="white")
     moved = _moved(layout, plan.taken[0], size)
     axes = inner.draw_parts(figure, seen, moved)
@@ -119,10 +115,15 @@ def _drawn(drawing: MapDrawing, points: Sequence[PointPoses]) -> DrawnMap:
     return figure, left_out(seen, layout)
 
 
-def _map_beside(drawing: MapDrawing) -> tuple[Any, Layout]:
-    """What is found to fit for the map between the poses."""
+def _planned(
+    drawing: MapDrawing, points: Sequence[PointPoses]
+) -> tuple[Plan, Size, MapDrawing, tuple[Any, Layout]]:
+    """The poses' places, the page's size, and what is found to fit for the map between them."""
+    plan = arranged(drawing.result, points, drawing.style)
+    size, style = sized(plan, drawing.style)
+    inner = drawing._replace(style=style)
     try:
-        return drawing.fit()
+        return plan, size, inner, inner.fit()
     except ConfigError as error:
         raise ConfigError(
             "the map and its legend have no room beside the poses", key=error.key

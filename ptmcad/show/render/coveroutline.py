@@ -22,7 +22,7 @@ from ptmcad.answer.regionmap import RegionMap
 from ptmcad.cover import components
 from ptmcad.cover.complement import Components, outlines
 from ptmcad.cover.subdivision import FREE
-from ptmcad.show.render.polylines import simplified_polygons
+from ptmcad.show.render.polylines import simplified_polygon
 from ptmcad.show.render.view import CellShape, Floats, View, WallShape, remembered
 
 TOLERANCE = 1.5e-4
@@ -120,8 +120,10 @@ def _polygons(seen: CoverOutline, tolerance: float) -> tuple[tuple[Floats, ...],
     there = _meets_view(np.minimum.reduceat(points, starts), np.maximum.reduceat(points, starts))
     points, sizes, cells = points[np.repeat(there, sizes)], sizes[there], cells[there]
     least = 1 if tolerance else 3
-    few = simplified_polygons(points, sizes, tolerance or TOLERANCE)
-    for cell, polygon in zip(cells.tolist(), few, strict=True):
+    # where no polygon is left there is one part without a point
+    parts = np.split(points, np.cumsum(sizes)[:-1])
+    for cell, part in zip(cells.tolist(), parts, strict=False):
+        polygon = simplified_polygon(part, tolerance or TOLERANCE)
         if len(polygon) >= least and _meets_view(polygon.min(axis=0), polygon.max(axis=0)):
             found[cell].append(polygon)
     return tuple(map(tuple, found))

@@ -18,13 +18,12 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 
 from ptmcad.answer.design import BestDesign
-from ptmcad.question.slice import Axis
 from ptmcad.show.designtable import design_table, value_text
 from ptmcad.show.render.axes import symbol
 from ptmcad.show.render.colours import INK
 from ptmcad.show.render.inches import write_lines
 from ptmcad.show.render.printing import settings
-from ptmcad.show.render.rangeplate import (
+from ptmcad.show.render.rangepicture import (
     LEFT,
     RIGHT,
     SIZE,
@@ -113,7 +112,14 @@ def _draw_plane(figure: Figure, axes: Any, found: BestDesign, foot: float) -> No
     ]
     if values:
         norm = Normalize(min(values), max(values) if max(values) > min(values) else min(values) + 1)
-        patches = [_rectangle(box.ranges, first, second) for box in found.boxes]
+        sides = [
+            [
+                [scaled(end, axis) for end in ends]
+                for ends, axis in zip(box.ranges, (first, second), strict=False)
+            ]
+            for box in found.boxes
+        ]
+        patches = [Rectangle((a, c), b - a, d - c) for (a, b), (c, d) in sides]
         boxes = PatchCollection(patches, cmap=COLOURS, norm=norm, edgecolor="white", linewidth=0.3)
         boxes.set_array([float(box.bound) for box in found.boxes])
         axes.add_collection(boxes)
@@ -134,17 +140,6 @@ def _draw_plane(figure: Figure, axes: Any, found: BestDesign, foot: float) -> No
                   clip_on=False, zorder=4)  # fmt: skip
     scaled_axis(axes.xaxis, first, "")
     scaled_axis(axes.yaxis, second, "")
-
-
-def _rectangle(ranges: Any, first: Axis, second: Axis) -> Rectangle:
-    (a, b), (c, d) = ranges[:2]
-    left, right, low, high = (
-        scaled(a, first),
-        scaled(b, first),
-        scaled(c, second),
-        scaled(d, second),
-    )
-    return Rectangle((left, low), right - left, high - low)
 
 
 def _value_name(found: BestDesign) -> str:

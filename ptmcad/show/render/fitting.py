@@ -192,9 +192,7 @@ def _placed(page: PageParts, legend: Sequence[Entry], insets: int) -> Layout | N
     """
     place = page.style.legend
     if place is not None:
-        return {LegendPlace.RIGHT: _right, LegendPlace.BELOW: _below, LegendPlace.NONE: _alone}[
-            place
-        ](page, legend, insets)
+        return (_right if place is LegendPlace.RIGHT else _below)(page, legend, insets)
     right, below = _right(page, legend, insets), _below(page, legend, insets)
     if right is None or below is None:
         return right or below
@@ -207,7 +205,7 @@ def _right(page: PageParts, legend: Sequence[Entry], insets: int) -> Layout | No
     for least in (*(max(share * width, MIN_SIDE * em) for share in _GOOD), MIN_SIDE * em):
         for columns in _COLUMNS:
             entries = [rewrapped(entry, columns * em, page.type) for entry in legend]
-            column = max((page.type.entry_width(entry) for entry in entries), default=0.0)
+            column = page.type.width(entries)
             if column > columns * em * 1.01:
                 continue  # a word is longer
             if insets:
@@ -225,29 +223,27 @@ def _right(page: PageParts, legend: Sequence[Entry], insets: int) -> Layout | No
 
 
 def _below(page: PageParts, legend: Sequence[Entry], insets: int) -> Layout | None:
-    """The legend in columns below the map, and insets in a row between."""
+    """The legend in columns below the map, if there is one, and insets in a row between."""
     em, (width, _) = page.em, page.size
     best: tuple[float, list[list[Entry]]] | None = None
     for number in (4, 3, 2, 1):
         room = (width - 2 * page.rim - (number - 1) * em) / number
         entries = [rewrapped(entry, room, page.type) for entry in legend if entry.lines]
-        if max(page.type.entry_width(entry) for entry in entries) > room * 1.01:
+        if page.type.width(entries) > room * 1.01:
             continue
-        most = ceil(len(entries) / number)
+        most = ceil(len(entries) / number) or 1
         columns = [entries[k : k + most] for k in range(0, len(entries), most)]
-        height = max(page.type.height(column) for column in columns)
+        height = max(map(page.type.height, columns), default=0.0)
         if best is None or height < best[0] - 1e-9:
             best = (height, columns)
     if best is None:
         return None
     height, columns = best
-    found = _over(page, page.rim + height + 0.5 * em, insets)
+    found = _over(page, page.rim + height + (0.5 * em if columns else 0.0), insets)
     if found is None:
         return None
     chart, boxes = found
-    widths = [
-        max((page.type.entry_width(entry) for entry in column), default=0.0) for column in columns
-    ]
+    widths = [page.type.width(column) for column in columns]
     gap = min(2 * em, (width - 2 * page.rim - sum(widths)) / max(1, len(widths) - 1))
     # below the map where there is room for that
     left = max(page.rim, min(chart[0], width - page.rim - sum(widths) - gap * (len(widths) - 1)))
@@ -257,11 +253,6 @@ def _below(page: PageParts, legend: Sequence[Entry], insets: int) -> Layout | No
         [((x, page.rim + height), column) for x, column in zip(starts, columns, strict=True)],
         boxes,
     )
-
-
-def _alone(page: PageParts, _legend: Sequence[Entry], insets: int) -> Layout | None:
-    found = _over(page, page.rim, insets)
-    return None if found is None else page.layout(found[0], (), found[1])
 
 
 def _over(page: PageParts, bottom: float, insets: int) -> tuple[Box, list[Box]] | None:

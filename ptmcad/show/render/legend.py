@@ -47,14 +47,13 @@ Mark = Callable[[Any, float, float], None]
 
 @dataclass(frozen=True, slots=True)
 class Entry:
-    """Some lines of text beside a fill, a line (`STRONG` or `THIN`), a dot, a drawing of its own or
-    nothing.
+    """Some lines of text beside a fill, a line (`STRONG` or `THIN`), a drawing of its own or nothing.
 
     ``heads`` is the number of lines, from the first, in the larger type.
     """
 
     lines: tuple[str, ...]
-    mark: Fill | float | str | Mark | None = None
+    mark: Fill | float | Mark | None = None
     strong: bool = False
     heads: int = 1
 
@@ -263,7 +262,7 @@ def draw_legend(
 
 
 def _draw_mark(
-    figure: Any, mark: Fill | float | str | Mark | None, left: float, middle: float, type: Type
+    figure: Any, mark: Fill | float | Mark | None, left: float, middle: float, type: Type
 ) -> None:
     from matplotlib.patches import Rectangle
 
@@ -287,15 +286,6 @@ def _draw_mark(
                 color=INK,
                 linewidth=width,
                 linestyle=kind,
-            )
-        case str():
-            stroke(
-                figure,
-                (left + swatch / 2,),
-                (middle,),
-                color=INK,
-                marker="o",
-                markersize=2.5 * type.scale,
             )
         case None:
             pass

@@ -29,10 +29,9 @@ from ptmcad.show.render.colours import INK, Paint, paint_of
 from ptmcad.show.render.fitting import PageParts, fitted
 from ptmcad.show.render.inches import Box, axes_at, write_lines
 from ptmcad.show.render.layout import SIDE, Layout, flowing, title_lines
-from ptmcad.show.render.legend import Entry, draw_legend, entries, hidden_entries
+from ptmcad.show.render.legend import Entry, draw_legend, entries, hidden_entries, point_mark
 from ptmcad.show.render.outline import Shapes, shapes
-from ptmcad.show.render.overlay import Overlay, draw_overlay, overlay_entries
-from ptmcad.show.render.painting import paint_map
+from ptmcad.show.render.painting import Overlay, draw_overlay, overlay_entries, paint_map
 from ptmcad.show.render.printing import save, settings
 from ptmcad.show.render.slivers import (
     MAX_ZOOMS,
@@ -245,7 +244,8 @@ class MapDrawing(NamedTuple):
         if self.style.legend is LegendPlace.NONE:
             return (), ()
         paint = paint_of(self.style, self.result)
-        dots = [Entry(("sample point of a cell",), "dot")] if self.samples else []
+        dot = point_mark(color=INK, marker="o", markersize=2.5 * paint.scale)
+        dots = [Entry(("sample point of a cell",), dot)] if self.samples else []
         rest = (*dots, *hidden_entries(seen.hidden * with_hidden), *overlay_entries(self.overlay))
         full, short = (
             (*entries(self.result, seen.thin_lines, paint, areas), *rest) for areas in (True, False)

@@ -195,6 +195,8 @@ def shapes(result: RegionMap) -> Shapes:
     return outline(result)
 
 
+# a map is drawn into several files, in several sizes and into the report
+@remembered(32)
 def outline(result: RegionMap, view: View | None = None, tolerance: float = TOLERANCE) -> Outline:
     """The outline of a map in a view, the whole window when None.
 
@@ -203,13 +205,7 @@ def outline(result: RegionMap, view: View | None = None, tolerance: float = TOLE
     tolerance : how far a chord may miss its branch, as a share of the view's size; the vertices are
         on it in any case.
     """
-    return _outline(result, View.whole(result) if view is None else view, tolerance)
-
-
-# a map is drawn into several files, in several sizes and into the report
-@remembered(32)
-def _outline(result: RegionMap, view: View, tolerance: float) -> Outline:
-    base = result.base
+    view, base = view or View.whole(result), result.base
     curves = by_component(curves_of(result.components, base))
     axis = result.slice.axes[base]
     roots = tuple((axis.at(low), axis.at(high)) for low, high in critical_shares(result))

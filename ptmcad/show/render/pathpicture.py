@@ -22,7 +22,7 @@ from ptmcad.show.render.axes import symbol, with_symbols
 from ptmcad.show.render.colours import INK
 from ptmcad.show.render.legend import Entry, line_mark, point_mark
 from ptmcad.show.render.printing import settings
-from ptmcad.show.render.rangeplate import EACH, LOOKS, middle_of, panelled, scaled, short
+from ptmcad.show.render.rangepicture import EACH, LOOKS, middle_of, panelled, scaled, short
 from ptmcad.show.units import unit_of_unknown, with_unit
 
 _MARKERS = {

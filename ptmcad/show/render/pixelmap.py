@@ -21,8 +21,14 @@ from ptmcad.answer.counts import Counts
 from ptmcad.answer.field import Field
 from ptmcad.show.render.axes import symbol
 from ptmcad.show.render.colours import INK, UNDETERMINED, fill_of_counts
-from ptmcad.show.render.fieldlines import pixel_edges
-from ptmcad.show.render.fieldpicture import COLOURS, bar_text, description, fill_empty, show_pixels
+from ptmcad.show.render.fieldpicture import (
+    COLOURS,
+    bar_text,
+    description,
+    fill_empty,
+    pixel_edges,
+    show_pixels,
+)
 from ptmcad.show.render.printing import printed, settings
 
 SIZE, DPI = (5.2, 4.2), 100

@@ -20,8 +20,7 @@ from ptmcad.show.render.colours import INK, fills_by_count, paint_of
 from ptmcad.show.render.legend import head_of
 from ptmcad.show.render.mappicture import MapDrawing, description, whole_title
 from ptmcad.show.render.outline import shapes
-from ptmcad.show.render.overlay import Overlay
-from ptmcad.show.render.painting import paint_map
+from ptmcad.show.render.painting import Overlay, paint_map
 from ptmcad.show.render.posewords import describe
 from ptmcad.show.render.printing import save, settings
 from ptmcad.show.style import DEFAULT, LegendPlace, PictureStyle, styled

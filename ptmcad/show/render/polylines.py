@@ -28,23 +28,16 @@ def distinct(corners: Integers) -> Integers:
     return kept
 
 
-def simplified_polygons(points: Floats, sizes: Integers, tolerance: float) -> list[Floats]:
-    """Closed polygons with fewer corners, their own, from which they depart by at most the
-    tolerance.
+def simplified_polygon(corners: Floats, tolerance: float) -> Floats:
+    """A closed polygon with fewer corners, its own, from which it departs by at most the tolerance.
 
     Method: Ramer, Douglas and Peucker; the two halves are those between the first corner and the
     one farthest from it.
 
     Parameters
     ----------
-    points : shape (n, 2), the corners of all of them, one polygon after the other.
-    sizes : the number of corners of each.
+    corners : shape (n, 2).
     """
-    parts = np.split(points, np.cumsum(sizes)[:-1]) if len(sizes) else []
-    return [_simplified_polygon(part, tolerance) for part in parts]
-
-
-def _simplified_polygon(corners: Floats, tolerance: float) -> Floats:
     corners = corners[(corners != np.roll(corners, 1, axis=0)).any(axis=1)]
     if len(corners) < 4:
         return corners

@@ -61,7 +61,7 @@ from ptmcad.text.numerals import magnitude
 from ptmcad.text.tree import to_text
 
 MARGIN, GAP, HEAD, BELOW, KEY = 0.2, 0.14, 0.26, 0.36, 2.75
-"""In inches: the rim, space between panels, a panel's lines above and below, the legend."""
+"""In inches: the rim, space between panels, a panel's lines above and two below, the legend."""
 
 
 def draw_poses(poses: Poses) -> Figure:
@@ -91,7 +91,7 @@ def draw_poses(poses: Poses) -> Figure:
     columns = 3 if len(shown) in (3, 5) or len(shown) > 5 else min(2, len(shown))
     rows = -(-len(shown) // columns)
     wide, tall = frame.width / 72, frame.height / 72
-    row = HEAD + tall + below_panel(shown[0], poses.model)
+    row = HEAD + tall + BELOW + 0.16 * (len(_lines_below(poses.model, shown[0])) - 2)
     entries = tuple(legend(poses, arrows))
     below = max(rows * row + (rows - 1) * GAP, Type().height(entries) + _SCALE_ROOM)
     width = 2 * MARGIN + columns * (wide + GAP) + KEY
@@ -118,11 +118,6 @@ def _lines_below(model: Model, pose: Pose) -> list[str]:
         *([] if pose.energy is None else [f"U = {number_text(pose.energy)}"]),
         *(", ".join(unknowns[k : k + 2]) for k in range(0, len(unknowns), 2)),
     ]
-
-
-def below_panel(pose: Pose, model: Model) -> float:
-    """Inches for the lines below a panel."""
-    return BELOW + 0.16 * (len(_lines_below(model, pose)) - 2)
 
 
 def panel(figure: Figure, seen: Sketch, pose: Pose, number: int, corner: Position) -> None:
@@ -280,7 +275,9 @@ _SCALE_ROOM = 0.3
 def scale_bar(figure: Figure, frame: PanelFrame, place: Position, units: Mapping[str, str]) -> None:
     """A bar of known length, at most 60 points long, from a place in inches to the right."""
     left, middle = place
-    step = _round_below(Fraction(60) / frame.scale)
+    most = Fraction(60) / frame.scale
+    power = Fraction(10) ** magnitude(most)
+    step = next(power * k for k in (5, 2, 1) if power * k <= most)
     length = float(step * frame.scale) / 72
     xs = (left, left, left, left + length, left + length, left + length)
     ys = (middle - 0.04, middle + 0.04, middle, middle, middle + 0.04, middle - 0.04)
@@ -288,9 +285,3 @@ def scale_bar(figure: Figure, frame: PanelFrame, place: Position, units: Mapping
     text = f"length {printed_number(Enclosure(step, step).text(2))}"
     text += f" {units['length']}" if "length" in units else ""
     write(figure, (left + length + 0.1, middle), text, 8, va="center_baseline", color="#444444")
-
-
-def _round_below(value: Fraction) -> Fraction:
-    """The largest 1, 2 or 5 times a power of ten that is not above the value."""
-    power = Fraction(10) ** magnitude(value)
-    return next(power * k for k in (5, 2, 1) if power * k <= value)

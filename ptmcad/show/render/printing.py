@@ -75,20 +75,6 @@ def settings(style: PictureStyle = DEFAULT) -> Iterator[None]:
         yield
 
 
-def suffix_of(path: Path) -> str:
-    """The format that a file's name asks for.
-
-    Raises
-    ------
-    ValueError
-        For another suffix than those of `FORMATS`.
-    """
-    suffix = path.suffix.lower().removeprefix(".")
-    if suffix not in FORMATS:
-        raise ValueError(f"{path.name}: the format {suffix!r} is not among {', '.join(FORMATS)}")
-    return suffix
-
-
 def save(figure: Figure, path: Path, *, dpi: int = 150, style: PictureStyle = DEFAULT) -> None:
     """Write a figure whose label is its title and, on further lines, its description.
 
@@ -105,7 +91,10 @@ def save(figure: Figure, path: Path, *, dpi: int = 150, style: PictureStyle = DE
     OSError
         When the file cannot be written.
     """
-    path.write_bytes(content(figure, suffix_of(path), dpi=dpi, style=style))
+    suffix = path.suffix.lower().removeprefix(".")
+    if suffix not in FORMATS:
+        raise ValueError(f"{path.name}: the format {suffix!r} is not among {', '.join(FORMATS)}")
+    path.write_bytes(content(figure, suffix, dpi=dpi, style=style))
 
 
 def content(figure: Figure, suffix: str, *, dpi: int = 150, style: PictureStyle = DEFAULT) -> bytes:

@@ -16,8 +16,8 @@ from typing import Any, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from ptmcad.answer.regionmap import Cell, Merge, Region, RegionMap
-from ptmcad.cover.subdivision import connected
+from ptmcad.answer.regionmap import Cell, Region, RegionMap
+from ptmcad.exact.cad.decomposition import members, region_numbers
 from ptmcad.show.render.colours import INK
 from ptmcad.show.render.inches import text_width
 from ptmcad.show.render.labels import Box, Label, Stroke, around, place, polyline
@@ -122,29 +122,14 @@ def seen_thin_walls(whole: Shapes, sides: Size) -> bool:
 @remembered(32)
 def told_apart(result: RegionMap) -> RegionMap:
     """An exact map whose regions are joined only where all counts of both cells are equal."""
-    alike = np.array(
-        [
-            (adjacency.first, adjacency.second)
-            for adjacency in result.adjacencies
-            for a, b in [(result.cells[adjacency.first], result.cells[adjacency.second])]
-            if adjacency.merge is not Merge.SEPARATED and (a.total, a.index) == (b.total, b.index)
-        ],
-        dtype=np.int64,
-    ).reshape(-1, 2)
-    groups: dict[int, list[int]] = {}
-    for n, first in enumerate(connected(len(result.cells), alike[:, 0], alike[:, 1]).tolist()):
-        groups.setdefault(first, []).append(n)
-    regions: list[Region] = []
-    of_cell: dict[int, int] = {}
-    for number, members in enumerate(groups.values()):
-        cell = result.cells[members[0]]
-        of_cell |= dict.fromkeys(members, number)
-        nothing = (Fraction(0), Fraction(0))
-        regions.append(
-            Region(cell.stable, cell.total, cell.index, nothing, tuple(members), cell.sample)
-        )
-    cells = tuple(replace(cell, region=of_cell[n]) for n, cell in enumerate(result.cells))
-    return replace(result, cells=cells, regions=tuple(regions))
+    keys = [(cell.stable, cell.total, cell.index) for cell in result.cells]
+    numbers = region_numbers(keys, [(a.first, a.second, 0) for a in result.adjacencies])
+    nothing = (Fraction(0), Fraction(0))
+    regions = tuple(
+        Region(*keys[own[0]], nothing, own, result.cells[own[0]].sample) for own in members(numbers)
+    )
+    cells = tuple(replace(cell, region=n) for cell, n in zip(result.cells, numbers, strict=True))
+    return replace(result, cells=cells, regions=regions)
 
 
 def zooms(whole: Shapes, thin: Sequence[int], most: int = MAX_ZOOMS) -> tuple[Zoom, ...]:

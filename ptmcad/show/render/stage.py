@@ -10,7 +10,7 @@ Not guaranteed: anything that only the pictures show. They are drawn in floating
 from __future__ import annotations
 
 import textwrap
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from fractions import Fraction
 from math import degrees, remainder
@@ -154,29 +154,23 @@ class Stage:
         """The way so far, and the point."""
         steps = self.motion.steps[: number + 1]
         view = View.whole(self.motion.result)
-        xs, ys = zip(*(view.approximate_position(step.at) for step in steps), strict=True)
+        places = [view.approximate_position(step.at) for step in steps]
         colour = FALLING if steps[-1].falling else FOLLOWED
-        look = {"transform": self.chart.transAxes}
-        line = self.chart.plot(
-            xs, ys, color=FOLLOWED, linewidth=2.0, zorder=7, solid_capstyle="round", **look
-        )
-        point = self.chart.plot(
-            xs[-1:], ys[-1:], marker="o", markersize=9, markerfacecolor="white", markeredgecolor=colour,
-            markeredgewidth=2.2, linestyle="none", zorder=8, clip_on=False, **look,
-        )  # fmt: skip
-        return [*line, *point]
+        marker = {
+            "markersize": 9,
+            "markerfacecolor": "white",
+            "markeredgecolor": colour,
+            "markeredgewidth": 2.2,
+        }
+        return _trail(self.chart, places, 7, marker, linewidth=2.0, transform=self.chart.transAxes)
 
     def _marble(self, number: int) -> list[Any]:
         """The followed pose's energy so far, and where it is."""
         steps = self.motion.steps[: number + 1]
-        xs, heights = [100 * step.share for step in steps], [step.height for step in steps]
+        places = [(100 * step.share, step.height) for step in steps]
         face = FALLING if steps[-1].falling else "white"
-        line = self.curve.plot(xs, heights, color=FOLLOWED, linewidth=1.4, zorder=4)
-        marble = self.curve.plot(
-            xs[-1:], heights[-1:], marker="o", markersize=7, linestyle="none", zorder=5, clip_on=False,
-            markerfacecolor=face, markeredgecolor=INK,
-        )  # fmt: skip
-        return [*line, *marble]
+        marker = {"markersize": 7, "markerfacecolor": face, "markeredgecolor": INK}
+        return _trail(self.curve, places, 4, marker, linewidth=1.4)
 
     def _said(self, step: Step) -> Iterator[Any]:
         """Where the point is, what is drawn, and its unknowns."""
@@ -246,20 +240,26 @@ class Stage:
         return write(self.figure, at, text, size, color=colour)
 
 
+def _trail(
+    axes: Any, places: Sequence[Any], zorder: int, marker: dict[str, Any], **look: Any
+) -> list[Any]:
+    """A line through places, and a marker on the last."""
+    xs, ys = zip(*places, strict=True)
+    look |= {"color": FOLLOWED, "solid_capstyle": "round"}
+    line = axes.plot(xs, ys, zorder=zorder, **look)
+    marker |= {"marker": "o", "linestyle": "none", "zorder": zorder + 1, "clip_on": False}
+    return [*line, *axes.plot(xs[-1:], ys[-1:], **(look | marker))]
+
+
 def _places(motion: Motion, mechanism: Mechanism, sides: Size) -> Iterator[dict[str, Position]]:
     """The points on paper at each step: one scale for all steps, and their middle in the middle."""
-    places = np.array([step.points for step in motion.steps]).reshape(-1, 2)
-    low, high = places.min(axis=0), places.max(axis=0)
-    room = [max(side - 2 * RIM, 10.0) for side in sides]
-    k = min(
-        (r / float(b - a) for r, a, b in zip(room, low, high, strict=True) if b > a), default=1.0
-    )
-    dx, dy = (side / 2 - k * float(a + b) / 2 for side, a, b in zip(sides, low, high, strict=True))
-    for step in motion.steps:
-        yield {
-            name: (x * k + dx, y * k + dy)
-            for name, (x, y) in zip(mechanism.points, step.points, strict=True)
-        }
+    places = np.array([step.points for step in motion.steps])
+    low, high = places.min(axis=(0, 1)), places.max(axis=(0, 1))
+    paper, wide = np.array(sides), high > low
+    room = np.maximum(paper - 2 * RIM, 10.0)
+    k = (room[wide] / (high - low)[wide]).min() if wide.any() else 1.0
+    for step in k * (places - (low + high) / 2) + paper / 2:
+        yield {name: (x, y) for name, (x, y) in zip(mechanism.points, step.tolist(), strict=True)}
 
 
 def _sketches(motion: Motion, mechanism: Mechanism, sides: Size) -> list[Sketch]:

@@ -23,7 +23,7 @@ from ptmcad.show.render.axes import heading_of, named, symbol
 from ptmcad.show.render.colours import UNDETERMINED, Fill, fill_of
 from ptmcad.show.render.outline import shapes
 from ptmcad.show.render.polylines import GRID
-from ptmcad.show.report.mapsvg import hatch_id, outline_data, pattern_defs
+from ptmcad.show.report.mapsvg import outline_data, paints, pattern_defs
 from ptmcad.show.report.reportpage import asset, harmless, policy_of, template
 from ptmcad.show.report.sections import swatch
 from ptmcad.show.sweeptable import count_order, middle
@@ -137,11 +137,8 @@ def _cell(sweep: Sweep, member: Member, sketch: Thumbnail | None) -> str:
             f'<button type="button" class="small none" data-m="{member.number}" aria-label="{escape(label)}: '
             f'{escape(member.state.value)}"></button>'
         )
-    drawn = [f'<path {_paint(sketch.plate)} d="M0 0H{SIDE}V{SIDE}H0z"/>'] if sketch.plate else []
-    for fill, data in sketch.paths:
-        drawn.append(f'<path fill="{escape(fill.face)}" d="{data}"/>')
-        if fill.hatch:
-            drawn.append(f'<path {_paint(Fill(fill.face, fill.hatch), hatched=True)} d="{data}"/>')
+    layers = ((sketch.plate, f"M0 0H{SIDE}V{SIDE}H0z"), *sketch.paths)
+    drawn = [f'<path fill="{p}" d="{data}"/>' for fill, data in layers for p in paints(fill)]
     return (
         f'<button type="button" class="small" data-m="{member.number}" aria-label="{escape(label)}">'
         f'<svg viewBox="0 0 {SIDE} {SIDE}" aria-hidden="true">{"".join(drawn)}</svg></button>'
@@ -158,10 +155,6 @@ def _legend(sketches: Collection[Thumbnail], counted: str) -> Iterator[str]:
         shown.append(("undetermined", UNDETERMINED))
     for text, fill in shown:
         yield f"<li>{swatch(fill)}{escape(text)}</li>"
-
-
-def _paint(fill: Fill, hatched: bool = False) -> str:
-    return f'fill="{f"url(#{hatch_id(fill.hatch)})" if hatched else escape(fill.face)}"'
 
 
 def _shown(value: Fraction) -> str:
@@ -304,7 +297,7 @@ def sketch(result: RegionMap) -> Thumbnail:
         for number, region in enumerate(result.regions):
             fill = fill_of(region, count)
             if fill != plate:
-                data = outline_data(seen, number, factor * TOLERANCE, SIDE / GRID)
+                data = outline_data(seen.polygons(number, factor * TOLERANCE), SIDE / GRID)
                 paths[fill] = paths.get(fill, "") + data
         drawn = Thumbnail(plate, tuple(paths.items()), tuple(legend.items()), result.slice.fixed)
         if sum(map(len, paths.values())) <= MAX_CHARACTERS:

@@ -10,7 +10,7 @@ itself.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from fractions import Fraction
 from html import escape
 from math import ceil
@@ -21,7 +21,6 @@ from numpy.lib.stride_tricks import sliding_window_view
 from ptmcad.answer.regionmap import Cell, Region
 from ptmcad.answer.words import stable_of
 from ptmcad.model import Model
-from ptmcad.question.counts import Count
 from ptmcad.show.render.axes import scale_of, symbol, ticks
 from ptmcad.show.render.colours import Fill, fill_of
 from ptmcad.show.render.labels import Position
@@ -178,28 +177,29 @@ def _shortened(value: Fraction) -> str:
     )
 
 
-def _closed(polygon: Floats) -> str:
-    return path_data(from_above(polygon, SIDE), closed=True)
+def paints(fill: Fill, prefix: str = "") -> list[str]:
+    """What a shape is painted with, one over the other: a colour and a hatch.
 
-
-def _paints(region: Region, count: Count) -> list[str]:
-    """What a region is filled with: its colour, and its hatch over it."""
-    fill = fill_of(region, count)
-    return [fill.face, *([f"url(#map-{hatch_id(fill.hatch)})"] if fill.hatch else [])]
+    Parameters
+    ----------
+    prefix : ``map-`` for what is drawn in steps of the grid.
+    """
+    hatch = [f"url(#{prefix}{hatch_id(fill.hatch)})"] if fill.hatch else []
+    return [escape(fill.face), *hatch]
 
 
 def _areas(seen: Shapes) -> Iterator[str]:
     """An exact map's regions, walls and cells, these from the left and from below."""
     result = seen.result
     for number, outline in region_outlines(seen):
-        for paint in _paints(result.regions[number], result.slice.count):
+        for paint in paints(fill_of(result.regions[number], result.slice.count), "map-"):
             yield f'<path class="fill" fill="{paint}" d="{outline}"/>'
     for (separates, component), line in wall_lines(seen).items():
         kind = "wall strong" if separates or component in result.continua else "wall"
         kind += '" stroke-dasharray="6 4' if component in result.continua else ""
         yield f'<path class="{kind}" data-curve="{component}" d="{line}"/>'
     for number, polygons in seen.cells(_WALLS / SIDE):
-        yield f'<path class="cell" data-cell="{number}" d="{"".join(map(_closed, polygons))}"/>'
+        yield f'<path class="cell" data-cell="{number}" d="{outline_data(polygons)}"/>'
 
 
 def region_outlines(seen: Shapes, simpler: bool = True) -> Iterator[tuple[int, str]]:
@@ -212,14 +212,13 @@ def region_outlines(seen: Shapes, simpler: bool = True) -> Iterator[tuple[int, s
     tolerance = (_WALLS if seen.result.cover is None else _RIMS) / SIDE if simpler else 0.0
     for number in range(len(seen.result.regions)):
         # one path for all parts: where two of them share an edge no seam is left
-        outline = outline_data(seen, number, tolerance)
+        outline = outline_data(seen.polygons(number, tolerance))
         if outline:
             yield number, outline
 
 
-def outline_data(seen: Shapes, region: int, tolerance: float, side: float = SIDE) -> str:
-    """A region's outline as such data, of a picture whose sides are so many units."""
-    polygons = seen.polygons(region, tolerance)
+def outline_data(polygons: Iterable[Floats], side: float = SIDE) -> str:
+    """Closed polygons as such data, of a picture whose sides are so many units."""
     return "".join(path_data(from_above(polygon, side), closed=True) for polygon in polygons)
 
 
@@ -240,13 +239,13 @@ def _rimmed_areas(seen: Shapes, name: str) -> Iterator[str]:
     over all fills, and the last of them, which nobody sees, keeps the pointer from the areas below.
     """
     result = seen.result
-    outlines = {n: "".join(map(_closed, p)) for n, p in seen.cells(_RIMS / SIDE)}
+    outlines = {n: outline_data(p) for n, p in seen.cells(_RIMS / SIDE)}
     body = "".join(f'<path id="{name}-{n}" class="outline" d="{d}"/>' for n, d in outlines.items())
     yield f'<defs><g id="{name}-rims">{body}</g></defs>'
     for region in result.regions:
         used = "".join(f'<use href="#{name}-{n}"/>' for n in region.cells if n in outlines)
         if used:
-            for paint in _paints(region, result.slice.count):
+            for paint in paints(fill_of(region, result.slice.count), "map-"):
                 yield f'<g class="fill" fill="{paint}">{used}</g>'
     rims = [
         f'<use class="{kind}" href="#{name}-rims" stroke-width="{width * GRID:g}"/>'

@@ -2,7 +2,8 @@
 
 Guarantee: the policy in its head allows nothing but the page's own style sheet and script, named by
 their hashes; the data cannot end the element it stands in. The same result gives the same bytes,
-timings apart.
+timings apart. The equations that the script follows are the compiled system's formulas as one list
+of instructions, with constants rounded to doubles.
 """
 
 from __future__ import annotations
@@ -13,6 +14,7 @@ import json
 from collections.abc import Sequence
 from html import escape
 from importlib.resources import files
+from math import isfinite
 from string import Template
 from typing import Any
 
@@ -20,10 +22,13 @@ from ptmcad.answer.consistency import check_numbers
 from ptmcad.answer.regionmap import RegionMap
 from ptmcad.answer.words import index_words, moments_work, untold
 from ptmcad.errors import ConfigError
+from ptmcad.formulas.instructions import MAX_CONSTANT, Instruction, script
 from ptmcad.model import Model, Support
+from ptmcad.model.compile import CompiledSystem, compiled
+from ptmcad.model.criterion import critical_point
 from ptmcad.model.joints import torsion_springs
 from ptmcad.model.work import split_moments
-from ptmcad.question.slice import Slice
+from ptmcad.question.slice import Slice, relaxed_springs
 from ptmcad.show.render.axes import heading_of, symbol, with_symbols
 from ptmcad.show.render.colours import fill_of
 from ptmcad.show.render.outline import Shapes, shapes
@@ -32,7 +37,6 @@ from ptmcad.show.report import sections
 from ptmcad.show.report.equilibria import at_sample, both
 from ptmcad.show.report.error_curve import ErrorCurve, error_section
 from ptmcad.show.report.mapsvg import SIDE, SLACK, chart, counts_text, pattern_defs
-from ptmcad.show.report.scripttape import tape
 from ptmcad.show.report.sections import curves
 from ptmcad.show.table import region_area
 from ptmcad.show.units import declared_units
@@ -263,3 +267,77 @@ def _data(result: RegionMap, seen: Shapes) -> dict[str, Any]:
             for x, y in [seen.view.approximate_position(cell.sample)]
         ],
     }
+
+
+MAX_OPERATIONS = 2000
+"""The script runs through them for each step of each solution."""
+
+
+def tape(result: RegionMap) -> dict[str, Any] | None:
+    """What the script needs to follow solutions over the map; None where nothing can be followed.
+
+    That is where no cell has solutions, a parameter has no value or a number is too large for
+    doubles; and with free lengths in closed loops, whose roots are in no equation of the
+    description.
+    """
+    slice = result.slice
+    model, system = slice.model, compiled(slice.model)
+    relaxed = relaxed_springs(model, slice.parameters)
+    if relaxed and system.tangent:
+        return None
+    if not any(cell.solutions for cell in result.cells) or not _fits(slice):
+        return None
+    names = [name for name in model.variables if name in slice.parameters]
+    instructions, places = script(_formulas(system, relaxed), _sources(system, names))
+    constants = [instruction[1] for instruction in instructions if instruction[0] == "="]
+    if len(instructions) > MAX_OPERATIONS or not all(map(isfinite, constants)):
+        return None
+    n = len(model.unknowns)
+    return {
+        **places,
+        "moments": list(places["moments"].items()),
+        "points": list(places["points"].values()),
+        "operations": instructions,
+        "parameters": [
+            [[[i, j, float(c)] for i, j, c in side] for side in (e.numerator, e.denominator)]
+            for e in (slice.parameters[name] for name in names)
+        ],
+        "angles": len(model.angles),
+        "unknowns": n,
+        "window": [[float(axis.low), float(axis.high)] for axis in slice.axes],
+        "kinds": ["stable", *(critical_point(k, n) for k in range(1, n + 1))],
+        "stableOnly": result.only_stable,
+    }
+
+
+def _formulas(system: CompiledSystem, relaxed: Sequence[int]) -> dict[str, Any]:
+    """What the script draws and follows; what a model does not have is empty."""
+    return {
+        "force": system.stored(relaxed) if system.are_slopes else None,
+        "energy": system.potential(relaxed),
+        "equations": () if system.are_slopes else system.equations,
+        "conditions": system.inequalities,
+        "stability": system.stability,
+        "moments": system.acting,
+        "points": system.shown.points,
+        "loads": system.shown.loads,
+    }
+
+
+def _sources(system: CompiledSystem, names: Sequence[str]) -> dict[int, Instruction]:
+    """Where the script has variables from; a free length that is not there is zero."""
+    unknowns = {number: ("u", k) for k, number in enumerate(system.unknowns)}
+    return {
+        number: unknowns.get(number, ("p", names.index(name)) if name in names else ("=", 0.0))
+        for number, name in enumerate(system.names)
+    }
+
+
+def _fits(slice: Slice) -> bool:
+    coefficients = [
+        c for e in slice.parameters.values() for side in (e.numerator, e.denominator) for _, _, c in side
+    ]  # fmt: skip
+    ends = [end for axis in slice.axes for end in (axis.low, axis.high)]
+    return all(name in slice.parameters for name in slice.model.without_free_lengths) and all(
+        abs(value) < MAX_CONSTANT for value in (*coefficients, *ends)
+    )

@@ -18,7 +18,7 @@ from ptmcad.show.render.axes import named, symbol
 from ptmcad.show.render.colours import Fill, fill_of
 from ptmcad.show.render.legend import Entry, entries, hidden_entries
 from ptmcad.show.report.equilibria import both, distinct_parameters
-from ptmcad.show.report.mapsvg import counts_text, hatch_id
+from ptmcad.show.report.mapsvg import counts_text, paints
 from ptmcad.show.report.reproduction import reproduction
 from ptmcad.show.table import NOT_COMPUTED, area_digits, areas_are_known, stability_in_words
 from ptmcad.show.units import area_unit, unit, with_unit
@@ -62,13 +62,8 @@ def copied(text: str, label: str) -> str:
 
 def swatch(fill: Fill) -> str:
     """A small square of a fill."""
-    hatch = (
-        f'<rect width="30" height="18" fill="url(#{hatch_id(fill.hatch)})"/>' if fill.hatch else ""
-    )
-    return (
-        f'<svg class="swatch" viewBox="0 0 30 18" aria-hidden="true"><rect width="30" height="18" fill="{fill.face}"/>'
-        f"{hatch}</svg>"
-    )
+    painted = "".join(f'<rect width="30" height="18" fill="{paint}"/>' for paint in paints(fill))
+    return f'<svg class="swatch" viewBox="0 0 30 18" aria-hidden="true">{painted}</svg>'
 
 
 def banner(result: RegionMap) -> str:
