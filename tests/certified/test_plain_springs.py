@@ -183,7 +183,7 @@ def test_no_equation_has_a_formula_in_it_that_holds_at_equilibria_only() -> None
     _, at = charts(PLAIN_PTM)
     tape = record([[*at.equations, at.determinant(), *(f for row in at.hessian for f in row)]])
     assert int(Operation.MEET) not in tape.program.operations
-    assert int(Operation.MEET) in record([[at.determinant(at_equilibrium=True)]]).operations
+    assert int(Operation.MEET) in record([[at.determinant(at_equilibrium=True)]]).program.operations
 
 
 def test_a_spring_that_nothing_balances_tells_no_direction() -> None:
