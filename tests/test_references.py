@@ -50,7 +50,7 @@ def lost(text: str) -> list[str]:
 
 @pytest.mark.parametrize(
     ("text", "there"),
-    [("`exact/areas/area.py`", True), ("`certified/specks`", True), ("`exact/cad/surface.py`", False),
+    [("`exact/areas/area.py`", True), ("`certified/covering`", True), ("`exact/cad/surface.py`", False),
      ("`ptmcad.model.closedloops`", True), ("`ptmcad.model.closures`", False),
      ("`ptmcad.answer.regionmap.RegionMap.cells`", True)],
 )  # fmt: skip

@@ -13,14 +13,12 @@ The formulas of a problem, exact:
     plain.harmonics         these sums, over Q(x, y)
     plain.divisors          common factors of their coefficients
     plain.straight          springs along one line: a problem for each choice of their sides
-    plain.cones             springs in formulas
-    plain.geometry          the factors, slopes and directions that formulas are made of
+    plain.geometry          springs, factors, slopes and directions that formulas are made of
     plain.springchart       equations, Hessian and determinant as formulas of `ptmcad.formulas`
     plain.unknownranges     where all solutions are, proved
-    plain.mirrors           involutions that keep a problem, and coordinates about fixed points
+    plain.mirrors           involutions that keep a problem, coordinates about fixed points, savings
     plain.opening           the energy in coordinates that are regular there
     plain.symmetricfolds    the folds about fixed points
-    plain.omissions         the savings that are made
     plain.curvesearch       what all curves of a problem have in common
     plain.criticalcurves    the curves at which counts change, as systems
     equationsystem          a system on a tape of `ptmcad.formulas`
@@ -34,14 +32,12 @@ The search, compiled:
     arb_isolation           the same with any number of digits
     refinement              the curves' boxes, level by level
     boxstrips               thin rectangles around the curve in a small box
-    covering                a cover of the window's part that boxes or strips leave open
-    specks                  small clusters of the cover that no curve enters
+    covering                a cover of the window's part that boxes or strips leave open, without specks
     pace                    when to hand a map over, and when to end
 
 The answer:
 
     plain.zeros             the solutions at a rational point, each proved
-    plain.halfangles        solutions in the description's unknowns
     plain.spectrum          eigenvalues, and how many of them are negative
     plain.rational          what is exact at an equilibrium
     plain.pointcounts       the counts at a point

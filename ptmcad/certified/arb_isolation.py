@@ -23,25 +23,30 @@ def newton(system: EquationSystem, box: Box, precision: int) -> tuple[Box, bool]
 
     None when there is no solution in the box (discarding formulas included).
     """
-    unknowns, size = [int(k) for k in system.unknowns], len(system.unknowns)
+    own = system.arguments
+    unknowns, size = [int(k) for k in own.unknowns], len(own.unknowns)
     try:
         values = run_arb(system.tape, box, precision)
     except EmptyMeet:
         return None
-    if any(_nonzero(values[int(place)]) for group in system.vanishing for place in group):
+    if any(
+        _nonzero(values[int(place)])
+        for group in (own.cheap, own.rest, own.costly)
+        for place in group
+    ):
         return None
-    if any(values[int(place)] < 0 for place in system.nonnegative):
+    if any(values[int(place)] < 0 for place in own.nonnegative):
         return None
     with ctx.workprec(precision):
         middle = list(box)
         for k in unknowns:
             middle[k] = box[k].mid()
         at = run_arb(system.tape, middle, precision, 2)
-        entries = [values[int(place)] for place in system.jacobian.flat]
+        entries = [values[int(place)] for place in own.jacobian.flat]
         if not all(entry.is_finite() for entry in entries):
             return box, False
         jacobian = arb_mat(size, size, entries)
-        residual = arb_mat(size, 1, [at[int(place)] for place in system.equations])
+        residual = arb_mat(size, 1, [at[int(place)] for place in own.equations])
         radii = [box[k].rad() for k in unknowns]
         shrunk, proved = list(box), False
         for complete in (True, False):
@@ -115,7 +120,7 @@ def _nonzero(value: arb) -> bool:
 def largest_radius(system: EquationSystem, box: Box) -> arb:
     """The largest radius in the unknowns, as an exact ball."""
     widest = arb(0)
-    for k in system.unknowns:
+    for k in system.arguments.unknowns:
         radius = box[int(k)].rad()
         widest = radius if radius > widest else widest
     return widest
@@ -182,7 +187,7 @@ def _proved(equations: EquationSystem, box: Box, size: arb, precision: int) -> B
     with ctx.workprec(precision):
         least = arb(fmpq(1, 2 ** (precision // 2)))
         wide = list(box)
-        for k in equations.unknowns:
+        for k in equations.arguments.unknowns:
             wide[int(k)] = arb(box[int(k)].mid(), 2 * size + least)
         step = newton(equations, tuple(wide), precision)
         return tuple(wide) if step is not None and step[1] else None
@@ -190,7 +195,7 @@ def _proved(equations: EquationSystem, box: Box, size: arb, precision: int) -> B
 
 def _halves(system: EquationSystem, box: Box, precision: int) -> tuple[Box, Box]:
     with ctx.workprec(2 * precision):
-        widest = max((int(k) for k in system.unknowns), key=lambda k: float(box[k].rad()))
+        widest = max((int(k) for k in system.arguments.unknowns), key=lambda k: float(box[k].rad()))
         middle, half = box[widest].mid(), box[widest].rad() / 2
         left, right = list(box), list(box)
         left[widest], right[widest] = arb(middle - half, half), arb(middle + half, half)

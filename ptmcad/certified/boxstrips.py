@@ -28,8 +28,8 @@ from ptmcad.certified.contraction import (
 )
 from ptmcad.certified.equationsystem import Arguments
 from ptmcad.formulas.compilation import ONE, ZERO, compiled, inlined
-from ptmcad.formulas.intervalarithmetic import Floats
 from ptmcad.formulas.rounding import down, multiply, reciprocal, up
+from ptmcad.formulas.tape import Floats
 
 Strips = NDArray[np.float64]
 """Shape (k, 11): left, bottom, right, top of a box's projection; v, the coordinate (0 or 1) that is

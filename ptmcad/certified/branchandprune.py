@@ -23,7 +23,7 @@ from ptmcad.certified.linear import space_for
 from ptmcad.certified.uniqueness import inflated
 from ptmcad.formulas.affine import LANES
 from ptmcad.formulas.compilation import ZERO, compiled, inlined
-from ptmcad.formulas.intervalarithmetic import Floats
+from ptmcad.formulas.tape import Floats
 
 Boxes = Floats
 """Shape (k, 2v): low ends of the v variables, then high ends; of rectangles v is 2."""

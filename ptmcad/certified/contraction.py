@@ -19,8 +19,9 @@ import numpy as np
 from ptmcad.certified.equationsystem import Arguments
 from ptmcad.certified.linear import Linear, contract_linear
 from ptmcad.formulas.compilation import ZERO, compiled, inlined
-from ptmcad.formulas.intervalarithmetic import Floats, Indices, run
+from ptmcad.formulas.intervalarithmetic import run
 from ptmcad.formulas.rounding import down, magnitude, multiply, reciprocal, up
+from ptmcad.formulas.tape import Floats, Indices
 
 MIN_PIVOT = 1e-200
 SWEEPS = 10

@@ -1,16 +1,26 @@
 """Covers of enclosed curves: the rectangles of their boxes, or pieces of strips that are as thin as
-is asked.
+is asked, without specks, which are small clusters that no curve enters after all.
 
 Guarantee: each point of the window that lies on the projection of a curve lies in a rectangle.
 (Lemmas 12 and 16 of docs/soundness.md.)
+A cluster is taken away only if no box that may hold a part of a curve meets it; what is
+left is a cover of the curves still. (A point of a curve in a cluster lies in a box of its
+enclosure, which meets the cluster and so is searched again; no box that the search leaves meets it.
+Where one half of the window is searched, that holds of the point or its image, and no box meets the
+cluster or its image.)
+
+Where a box is contracted to a sliver at its edge, its projection is small at once, and it is left
+alone although the next bisection would discard it. Such slivers are a few hundred-thousandths of
+the window, and seen in each picture.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
+from itertools import compress
 from math import inf
 
 import numpy as np
@@ -24,12 +34,13 @@ from ptmcad.certified.boxstrips import (
     pieces,
     strips,
 )
-from ptmcad.certified.branchandprune import Boxes
-from ptmcad.certified.refinement import CurveEnclosure
-from ptmcad.cover import from_boxes, union_area
-from ptmcad.cover.lattice import combined, cover_of, gathered
+from ptmcad.certified.branchandprune import Boxes, search_curve
+from ptmcad.certified.refinement import BUDGET, CurveEnclosure
+from ptmcad.cover.complement import Components
+from ptmcad.cover.connectivity import components, union_area
+from ptmcad.cover.lattice import combined, cover_of, from_boxes, gathered
 from ptmcad.cover.rectangles import Cover, Window
-from ptmcad.cover.subdivision import Integers, rectangle_array
+from ptmcad.cover.subdivision import COVERED, FREE, Integers, rectangle_array
 from ptmcad.formulas.tape import enclosing_floats
 from ptmcad.model.involutions import Involution
 
@@ -47,6 +58,15 @@ CUT_COVERAGE = 0.5
 HALVINGS = 200
 """Of the area by which a piece may be larger than its strip, at most; below, floats are exhausted.
 """
+MAX_SHARE = Fraction(1, 10_000)
+"""Of the window: larger clusters are no specks."""
+ROUNDS, FINER = 3, 4.0**-2
+"""The number of rounds, and by what the area of boxes' projections is multiplied in each."""
+MAX_GROWTH = 2
+"""A cluster of which there are more than so many times the boxes after a round is no speck: along a
+curve, there are four times as many."""
+MAX_PAIRS = 3 * 10**7
+"""Rectangles of specks times boxes: beyond, to look for them would take seconds."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -207,7 +227,7 @@ def thinning(enclosures: Sequence[CurveEnclosure], lattice: Lattice, jobs: int) 
     """The strips of all boxes of the curves."""
     with ThreadPoolExecutor(jobs) as pool:
         found = [
-            pool.submit(strips, enclosure.curve.system.arguments(), boxes[start : start + BATCH])
+            pool.submit(strips, enclosure.curve.system.arguments, boxes[start : start + BATCH])
             for enclosure in enclosures
             for boxes in [enclosure.boxes()]
             for start in range(0, len(boxes), BATCH)
@@ -219,3 +239,49 @@ def thinning(enclosures: Sequence[CurveEnclosure], lattice: Lattice, jobs: int) 
     squares = union_area(combined(lattice.cover(pieces(whole, inf))))
     area = float((right - left) * (top - bottom) * squares / lattice.steps**2)
     return Thinning(together[worthwhile], whole, area, lattice)
+
+
+def without_specks(
+    complement: Components, enclosures: Sequence[CurveEnclosure], lattice: Lattice, area: float
+) -> Components:
+    """The components of a cover's complement, and its clusters, without its specks.
+
+    Parameters
+    ----------
+    complement : of a cover of all that the enclosures hold.
+    area : of a box's projection, below which the search has left it alone.
+    """
+    cover = complement.cover
+    most = MAX_SHARE * cover.steps**2
+    small = np.array([share <= most for share in complement.cluster_areas], dtype=np.bool_)
+    cluster_of = np.array(complement.cluster_of, dtype=np.int64)
+    chosen = np.flatnonzero(small[cluster_of]) if len(cluster_of) else cluster_of
+    boxes = [enclosure.boxes() for enclosure in enclosures]
+    places, owners = rectangle_array(cover)[chosen], np.tile(cluster_of[chosen], lattice.copies)
+    if lattice.change is not None:  # where no box is there may be one over the image
+        places = np.concatenate([places, lattice.images(places, cover.steps)])
+    if not len(chosen) or len(places) * sum(map(len, boxes)) > MAX_PAIRS:
+        return complement
+    rectangles, clusters = outward(lattice.window, places, cover.steps), np.flatnonzero(small)
+    specks = [rectangles[owners == n] for n in clusters]
+    held = np.zeros(len(specks), dtype=np.bool_)
+    for enclosure, own in zip(enclosures, boxes, strict=True):
+        curve, left, searched, met = enclosure.curve, own, ~held, _entered(specks, own)
+        for number in range(1, ROUNDS + 1):
+            near, finer = left[met[searched].any(axis=0)], area * FINER**number
+            left = search_curve(curve.system.arguments, near, finer, BUDGET, curve.weights).left()
+            before, met = met.sum(axis=1), _entered(specks, left)
+            searched &= met.sum(axis=1) <= MAX_GROWTH * before
+        held = ~searched | met.any(axis=1)
+    if held.all():
+        return complement
+    tree, lost = complement.subdivision, clusters[~held]
+    kept = tuple(compress(cover.rectangles, ~np.isin(cluster_of, lost)))
+    # what they cover is free now, and no part has to be cut again
+    state = np.where((tree.state == COVERED) & np.isin(complement.owner, lost), FREE, tree.state)
+    return components(cover._replace(rectangles=kept), replace(tree, state=state))
+
+
+def _entered(specks: Sequence[Boxes], boxes: Boxes) -> NDArray[np.bool_]:
+    """Which of several sets of rectangles, and which boxes' projections, have points in common."""
+    return np.array([meeting(rectangles, boxes).any(axis=0) for rectangles in specks])

@@ -26,7 +26,7 @@ from ptmcad.certified.plain.criticalcurves import curves
 from ptmcad.certified.plain.pointcounts import plain_counter
 from ptmcad.certified.plain.zeros import PointCount
 from ptmcad.certified.refinement import CriticalCurve
-from ptmcad.formulas.ballarithmetic import ball, lower, upper
+from ptmcad.formulas.ballarithmetic import ball, balls, lower, upper
 from ptmcad.formulas.tape import enclosing_floats
 from ptmcad.question.counts import Count
 from ptmcad.question.slice import Slice
@@ -104,7 +104,8 @@ def _changes(
     """Where the line meets a curve; parts of it that are too hard as a whole are halved while the
     budget lasts, but for what is ``undecided`` in them."""
     system = on_line(curve.system, 0)
-    equations = replace(system, vanishing=(_NONE, _NONE, _NONE), nonnegative=_NONE)
+    alone = system.arguments._replace(cheap=_NONE, rest=_NONE, costly=_NONE, nonnegative=_NONE)
+    equations = replace(system, arguments=alone)
     axis, value = slice.axes[0], slice.axes[1].low
     step = (axis.high - axis.low) / START_PARTS
     waiting = [(axis.low + k * step, axis.low + (k + 1) * step) for k in range(START_PARTS)]
@@ -116,9 +117,7 @@ def _changes(
         ends = enclosing_floats(low)[0], enclosing_floats(high)[1]
         start = curve.start(np.array([[ends[0], fixed[0], ends[1], fixed[1]]]))
         limits = MIN_BOX_WIDTH, BUDGET, MAX_OPEN_BOXES
-        found = isolate(
-            system.arguments(), equations.arguments(), start, limits, curve.importance()
-        )
+        found = isolate(system.arguments, equations.arguments, start, limits, curve.weights)
         total += found.used
         left, variables = found.left(), start.shape[1] // 2
         if (
@@ -143,11 +142,8 @@ def _changes(
         # precision
         for row in found.narrow:
             with ctx.workprec(bits):
-                floats = [
-                    ball(Fraction(float(row[k])), Fraction(float(row[variables + k])))
-                    for k in range(variables)
-                ]
-                box = (floats[0], ball(value, value), *floats[2:])
+                along, _, *others = balls(*np.split(row, 2))
+                box = along, ball(value, value), *others
             exact = refined(equations, box, bits)[0]
             yield _met(Enclosure(lower(exact), upper(exact)), curve, True)
 
@@ -162,13 +158,13 @@ _NONE = np.empty(0, np.int64)
 
 def on_line(system: EquationSystem, varying: int) -> EquationSystem:
     """The square system that is left when the other axis has a value."""
-    kept = np.array(
-        [k for k, unknown in enumerate(system.unknowns) if unknown != 1 - varying], np.int64
-    )
+    own = system.arguments
+    kept = np.flatnonzero(own.unknowns != 1 - varying)
     # the value is fixed: what the equations say of it must not narrow the floats around it
-    solved = system.solved[system.solved[:, 0] == varying]
-    jacobian = np.ascontiguousarray(system.jacobian[:, kept])
-    return replace(system, unknowns=system.unknowns[kept], jacobian=jacobian, solved=solved)
+    solved = own.solved[own.solved[:, 0] == varying]
+    jacobian = np.ascontiguousarray(own.jacobian[:, kept])
+    own = own._replace(unknowns=own.unknowns[kept], jacobian=jacobian, solved=solved)
+    return replace(system, arguments=own)
 
 
 def _joined(changes: Sequence[Change]) -> tuple[Change, ...]:

@@ -27,6 +27,7 @@ from ptmcad.certified.covering import (
     first_rectangles,
     share_of,
     thinning,
+    without_specks,
 )
 from ptmcad.certified.loading import load
 from ptmcad.certified.pace import PARTS, SAFETY, Pace, parts_done
@@ -34,7 +35,6 @@ from ptmcad.certified.plain.criticalcurves import curves
 from ptmcad.certified.plain.mirrors import halving
 from ptmcad.certified.plain.pointcounts import plain_counter
 from ptmcad.certified.refinement import CurveEnclosure, begin, refine
-from ptmcad.certified.specks import without_specks
 from ptmcad.certified.statement import plan_of
 from ptmcad.cover import components
 from ptmcad.cover.lattice import combined

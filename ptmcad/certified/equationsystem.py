@@ -15,47 +15,23 @@ import numpy as np
 
 from ptmcad.formulas.evaluation import nodes_of, substituted
 from ptmcad.formulas.graph import Formula, Operation, gradient
-from ptmcad.formulas.intervalarithmetic import Indices, Program, program
-from ptmcad.formulas.tape import Tape, record
+from ptmcad.formulas.tape import Indices, Program, Tape, record
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class EquationSystem:
-    """Equations f = 0 (m of them) in n unknowns, n = m (points) or m + 1 (curves).
+class Arguments(NamedTuple):
+    """What compiled code takes of equations f = 0 (m of them) in n unknowns, n = m (points) or m + 1
+    (curves).
 
     Attributes
     ----------
-    tape : stage 0 has the first two equations and cheap formulas that vanish with them, stage 1 the
-        other equations, stage 2 the formulas that discard boxes, stage 3 the Jacobian, row by row.
     unknowns : int64 (n,): the numbers of the variables that are searched; others are fixed (narrow)
         intervals.
     equations : int64 (m,): places on the tape.
     jacobian : int64 (m, n): places of df_i/dx_j.
+    cheap, rest, costly : what vanishes at solutions, and is known after stage 0, 1 and 2 in turn.
     solved : int64 (k, 3): a variable and the places of two formulas, rest and slope, with
         rest + slope v = 0 for the variable's value v at each solution. They stand before
         ``solved_end``, at the beginning of the tape.
-    """
-
-    tape: Tape
-    unknowns: Indices
-    equations: Indices
-    jacobian: Indices
-    vanishing: tuple[Indices, Indices, Indices]
-    nonnegative: Indices
-    solved: Indices
-    solved_end: int
-
-    def arguments(self) -> Arguments:
-        """The system as the compiled code takes it."""
-        return Arguments(
-            program(self.tape), self.tape.stages, self.unknowns, self.equations, self.jacobian,
-            *self.vanishing, self.nonnegative, self.solved, self.solved_end,
-        )  # fmt: skip
-
-
-class Arguments(NamedTuple):
-    """An `EquationSystem` for compiled code; what vanishes at solutions is known after stage 0, 1
-    and 2 in turn.
     """
 
     program: Program
@@ -69,6 +45,20 @@ class Arguments(NamedTuple):
     nonnegative: Indices
     solved: Indices
     solved_end: int
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class EquationSystem:
+    """Equations with what discards boxes.
+
+    Attributes
+    ----------
+    tape : stage 0 has the first two equations and cheap formulas that vanish with them, stage 1 the
+        other equations, stage 2 the formulas that discard boxes, stage 3 the Jacobian, row by row.
+    """
+
+    tape: Tape
+    arguments: Arguments
 
 
 def system(
@@ -105,16 +95,20 @@ def system(
     ])  # fmt: skip
     places, solved_end = tape.outputs[0].reshape(-1, 2), int(tape.stages[0])
     tape = replace(tape, stages=tape.stages[1:], outputs=tape.outputs[1:])
-    return EquationSystem(
-        tape,
+    arguments = Arguments(
+        tape.program,
+        tape.stages,
         np.array(unknowns, np.int64),
         np.concatenate([tape.outputs[0][: len(first)], tape.outputs[1]]),
         tape.outputs[3].reshape(len(equations), len(unknowns)),
-        (tape.outputs[0], tape.outputs[1], tape.outputs[2][: len(costly)]),
+        tape.outputs[0],
+        tape.outputs[1],
+        tape.outputs[2][: len(costly)],
         tape.outputs[2][len(costly) :],
         np.column_stack([np.array([variable for variable, *_ in solved], np.int64), places]),
         solved_end,
     )
+    return EquationSystem(tape, arguments)
 
 
 Quotient = tuple[int, Formula, Formula]

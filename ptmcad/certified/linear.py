@@ -28,8 +28,8 @@ from ptmcad.formulas.affine import (
     set_frame,
 )
 from ptmcad.formulas.compilation import compiled
-from ptmcad.formulas.intervalarithmetic import Floats, Indices
 from ptmcad.formulas.rounding import down, up
+from ptmcad.formulas.tape import Floats, Indices
 
 MIN_GAIN = 0.5
 """A row is solved for an unknown if its slope is at least this part of its error."""

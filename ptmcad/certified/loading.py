@@ -21,7 +21,7 @@ from ptmcad.certified.equationsystem import EquationSystem, system
 from ptmcad.certified.uniqueness import distinct
 from ptmcad.formulas.compilation import FUNCTIONS, in_turn
 from ptmcad.formulas.graph import Graph
-from ptmcad.formulas.intervalarithmetic import program, run
+from ptmcad.formulas.intervalarithmetic import run
 
 STAGE = "compiling the certified engine, once on this machine:"
 Progress = Callable[[str, int, int], None]
@@ -107,14 +107,14 @@ def _use_each() -> None:
     """
     square = np.array([[0.0, 0.0, 1.0, 1.0]])
     line, point = _systems()
-    distinct(square, square, 0)
+    distinct(square, square, 0, np.zeros(2))
     low, high = np.empty((2, len(line.tape)))
-    run(program(line.tape), square[0, :2], square[0, 2:], low, high, 0, len(line.tape))
-    thin = strips(line.arguments(), square)
+    run(line.tape.program, square[0, :2], square[0, 2:], low, high, 0, len(line.tape))
+    thin = strips(line.arguments, square)
     numbers_of_pieces(thin, 0.25)
     areas_of_pieces(thin, 0.25)
     pieces(thin, 0.25)
-    isolate(point.arguments(), point.arguments(), square, (1e-3, 64, 4), np.ones(2))
+    isolate(point.arguments, point.arguments, square, (1e-3, 64, 4), np.ones(2))
 
 
 def _systems() -> tuple[EquationSystem, EquationSystem]:

@@ -86,7 +86,7 @@ def _refine_one(
     report: Callable[[int, int], None] | None,
     late: Callable[[], bool] | None,
 ) -> bool:
-    arguments, weights = enclosure.curve.system.arguments(), enclosure.curve.importance()
+    arguments, weights = enclosure.curve.system.arguments, enclosure.curve.weights
     queue = list(_batches(enclosure.waiting))
     running: dict[Future[SearchResult], Boxes] = {}
     treated = 0
@@ -130,12 +130,8 @@ class CriticalCurve:
     reason: str
     system: EquationSystem
     ranges: tuple[tuple[float, float], ...]
-    weights: NDArray[np.float64] | None = None
-    """Of the variables' widths in the choice which one to bisect; equal ones when None."""
-
-    def importance(self) -> NDArray[np.float64]:
-        """The weights of all variables."""
-        return np.ones(2 + len(self.ranges)) if self.weights is None else self.weights
+    weights: NDArray[np.float64]
+    """Of the variables' widths in the choice which one to bisect."""
 
     def start(self, window: Boxes) -> Boxes:
         """Boxes over rectangles (low x, low y, high x, high y) of the window that hold the whole

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 from ptmcad.answer.plan import half_step, saving_step, zero_parameters, zero_terms
 from ptmcad.answer.regionmap import PlanStep, System
-from ptmcad.certified.plain.omissions import omissions
+from ptmcad.certified.plain.mirrors import omissions
 from ptmcad.certified.plain.problem import problem_of
 from ptmcad.certified.plain.straight import branches
 from ptmcad.errors import PtmcadError
@@ -83,7 +83,7 @@ def plan_of(
             PlanStep(
                 curve.name,
                 True,
-                f"enclosed by branch and prune in {len(curve.system.unknowns)} unknowns",
+                f"enclosed by branch and prune in {len(curve.system.arguments.unknowns)} unknowns",
             )
             for curve in curves
         ),

@@ -26,8 +26,8 @@ from ptmcad.certified.contraction import (
 )
 from ptmcad.certified.equationsystem import Arguments
 from ptmcad.formulas.compilation import compiled, inlined
-from ptmcad.formulas.intervalarithmetic import Floats
 from ptmcad.formulas.rounding import down, magnitude, mignitude, up
+from ptmcad.formulas.tape import Floats
 
 INFLATION = 1e-5
 """The first attempt widens a box by this much on each side; each further one by 1/8 of the last."""
@@ -103,7 +103,7 @@ _TURN_ERROR = 1e-14
 
 
 def distinct(
-    unique: Floats, narrow: Floats, first: int, periods: NDArray[np.float64] | None = None
+    unique: Floats, narrow: Floats, first: int, periods: Floats
 ) -> NDArray[np.int64] | None:
     """Rows of zeros that are all different; every zero is one of them. None when this cannot be
     decided for some pair.
@@ -113,12 +113,9 @@ def distinct(
     unique, narrow : (k, 2v): boxes with exactly one zero each, and narrower ones around the same
         zero.
     first : number of the first unknown; all variables from it on are unknowns.
-    periods : shape (v,), for each variable `FULL_TURN` if it is an angle, else 0; all unknowns are
-        angles when None.
+    periods : shape (v,), for each variable `FULL_TURN` if it is an angle, else 0.
     """
     kept = np.empty(len(unique), np.int64)
-    if periods is None:
-        periods = np.full(unique.shape[1] // 2, FULL_TURN)
     count = int(_distinct(unique, narrow, first, periods, kept))
     return None if count < 0 else kept[:count]
 

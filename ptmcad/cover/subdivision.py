@@ -52,20 +52,20 @@ class Subdivision:
 
     def leaves_at(self, u: Fraction, v: Fraction) -> list[int]:
         """All leaves whose closure holds a point of the window."""
+        # a leaf has integer bounds: its closure holds a point where it meets the squares around it
+        low = [place.__ceil__() - 1 for place in (u, v)]
+        high = [place.__floor__() + 1 for place in (u, v)]
         found, waiting = [], [0]
-        # the cuts are integers: compare with the floor, and see whether the point is on the cut
-        floors = (u.__floor__(), v.__floor__())
-        whole = (u == floors[0], v == floors[1])
         while waiting:
             part = waiting.pop()
             if self.state[part] != CUT:
                 found.append(part)
                 continue
             axis, cut, child = int(self.axis[part]), int(self.cut[part]), int(self.child[part])
-            if floors[axis] >= cut:
-                waiting.append(child + 1)
-            if floors[axis] < cut or (whole[axis] and floors[axis] == cut):
+            if low[axis] < cut:
                 waiting.append(child)
+            if high[axis] > cut:
+                waiting.append(child + 1)
         return found
 
     def leaves_right_above(self, x: Integers, y: Integers) -> Integers:

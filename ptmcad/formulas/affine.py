@@ -41,11 +41,9 @@ from ptmcad.formulas.intervalarithmetic import (
     SQUARE,
     SUBTRACT,
     VARIABLE,
-    Floats,
-    Indices,
-    Program,
 )
 from ptmcad.formulas.rounding import MAX_ANGLE, SINE_ERROR, sine_cosine
+from ptmcad.formulas.tape import Floats, Indices, Program
 
 Place = int
 """Of a node; compiled code is given numbers without a sign, see `Places`."""

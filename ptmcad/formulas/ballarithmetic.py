@@ -22,7 +22,7 @@ from typing import Any
 from flint import arb, ctx
 
 from ptmcad.formulas.graph import OPERATORS, Formula, Operation
-from ptmcad.formulas.tape import Tape, record
+from ptmcad.formulas.tape import NO_OPERAND, Tape, record
 from ptmcad.text.balls import ball_of, exact
 from ptmcad.text.flint_numbers import from_fraction
 
@@ -36,6 +36,11 @@ class EmptyMeet(Exception):
 def ball(low: Fraction, high: Fraction) -> arb:
     """A ball that contains the interval, at the context's precision."""
     return ball_of(low).union(ball_of(high)) if low != high else ball_of(low)
+
+
+def balls(low: Iterable[float], high: Iterable[float]) -> list[arb]:
+    """The same of several intervals of floats."""
+    return [ball(Fraction(u), Fraction(v)) for u, v in zip(low, high, strict=True)]
 
 
 def lower(value: arb) -> Fraction:
@@ -69,7 +74,7 @@ def run_arb(tape: Tape, box: Sequence[arb], precision: int, stages: int | None =
                 values.append(box[a])
             elif function is arb:
                 values.append(arb(a))
-            elif b < 0:
+            elif b == NO_OPERAND:
                 values.append(function(values[a]))
             else:
                 values.append(function(values[a], values[b]))
@@ -82,7 +87,7 @@ def _steps(tape: Tape) -> list[tuple[Callable[..., arb] | None, Any, int]]:
     and the number.
     """
     steps: list[tuple[Callable[..., arb] | None, Any, int]] = []
-    rows = zip(tape.operations.tolist(), tape.first.tolist(), tape.second.tolist(), strict=True)
+    rows = zip(*(column.tolist() for column in tape.program[:3]), strict=True)
     for place, (operation, a, b) in enumerate(rows):
         if operation == Operation.CONSTANT:
             steps.append((arb, from_fraction(tape.constants[place]), b))

@@ -37,6 +37,8 @@ _MAX_NEAR = 1000
 it takes them all.
 """
 
+_WHOLE = arb(1)
+
 Vector = tuple[arb, ...]
 """One ball for each unknown: the angles, then those on the line."""
 
@@ -135,18 +137,15 @@ class BranchTube:
 
     def at(self, value: Fraction) -> Vector:
         """An enclosure of the unknowns at one value."""
-        with ctx.workprec(BITS):
-            return self._moved(ball_of(value - self._middle), self.tight)
+        return self._moved(value - self._middle, self.tight)
 
     def hull(self) -> Vector:
         """An enclosure of the unknowns at all values."""
-        with ctx.workprec(BITS):
-            return self._moved(ball_of((self.high - self.low) / 2) * arb(0, 1), self.tight)
+        return self._moved((self.high - self.low) / 2, self.tight, arb(0, 1))
 
     def alone(self, value: Fraction) -> Vector:
         """Where the solution at one value is the only one."""
-        with ctx.workprec(BITS):
-            return self._moved(ball_of(value - self._middle), self.unique)
+        return self._moved(value - self._middle, self.unique)
 
     def holds(self, other: BranchTube, value: Fraction) -> bool:
         """Whether the other tube's solution at a value lies where this one's is the only one."""
@@ -156,8 +155,10 @@ class BranchTube:
     def _middle(self) -> Fraction:
         return (self.low + self.high) / 2
 
-    def _moved(self, offset: arb, box: arb_mat) -> Vector:
-        return tuple((self.center + self.velocity * offset + box).entries())
+    def _moved(self, offset: Fraction, box: arb_mat, shares: arb = _WHOLE) -> Vector:
+        with ctx.workprec(BITS):
+            along = self.velocity * (ball_of(offset) * shares)
+            return tuple((self.center + along + box).entries())
 
 
 def enclose(

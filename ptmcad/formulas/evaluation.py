@@ -121,15 +121,17 @@ def formulas_in(structure: Any) -> list[Formula]:
     return formulas
 
 
-def mapped(structure: Any, of: Callable[[Formula], Any]) -> Any:
-    """Such a structure with something else in place of each formula."""
-    if isinstance(structure, Formula):
+def mapped(structure: Any, of: Callable[[Any], Any], leaf: type = Formula) -> Any:
+    """Such a structure with something else in place of each formula, or of each instance of another
+    class.
+    """
+    if isinstance(structure, leaf):
         return of(structure)
     if isinstance(structure, Mapping):
-        return {key: mapped(part, of) for key, part in structure.items()}
+        return {key: mapped(part, of, leaf) for key, part in structure.items()}
     if isinstance(structure, tuple | list):
         make = getattr(structure, "_make", type(structure))  # of a named tuple its own
-        return make(mapped(part, of) for part in structure)
+        return make(mapped(part, of, leaf) for part in structure)
     return structure
 
 

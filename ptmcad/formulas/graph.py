@@ -167,22 +167,16 @@ class Graph:
     _known: dict[tuple[object, ...], Formula] = field(default_factory=dict)
     _derivatives: dict[tuple[int, int], Formula] = field(default_factory=dict)
 
-    def node(
-        self, operation: Operation, a: Formula | None = None, b: Formula | None = None
-    ) -> Formula:
-        """The node of this operation; an old one if there is one."""
-        return self._intern(operation, a, b)
-
     def constant(self, value: Number) -> Formula:
-        return self._intern(Operation.CONSTANT, value=Fraction(value))
+        return self.node(Operation.CONSTANT, value=Fraction(value))
 
     def variable(self, number: int) -> Formula:
-        return self._intern(Operation.VARIABLE, variable=number)
+        return self.node(Operation.VARIABLE, variable=number)
 
     def formula(self, value: Formula | Number) -> Formula:
         return value if isinstance(value, Formula) else self.constant(value)
 
-    def _intern(
+    def node(
         self,
         operation: Operation,
         a: Formula | None = None,
@@ -190,6 +184,7 @@ class Graph:
         value: Fraction | None = None,
         variable: int = -1,
     ) -> Formula:
+        """The node of this operation; an old one if there is one."""
         key = (operation, a and a.number, b and b.number, value, variable)
         known = self._known.get(key)
         if known is None:

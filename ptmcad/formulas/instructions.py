@@ -8,13 +8,12 @@ or no number.
 
 from __future__ import annotations
 
-import operator
 from collections.abc import Callable, Mapping
 from math import inf
 from typing import Any
 
 from ptmcad.formulas.evaluation import formulas_in, mapped, nodes_of
-from ptmcad.formulas.graph import Operation
+from ptmcad.formulas.graph import OPERATORS, Operation
 
 
 class Doubles:
@@ -53,15 +52,12 @@ class Doubles:
         return mapped(self._structure, lambda formula: of(found[formula.number]))
 
 
-def _functions(functions: Any) -> dict[Operation, Callable[..., Any]]:
+def _functions(functions: Any) -> dict[int, Callable[..., Any]]:
     root = functions.sqrt
     return {
+        **OPERATORS,
         Operation.COSINE: functions.cos,
         Operation.SINE: functions.sin,
-        Operation.ADD: operator.add,
-        Operation.SUBTRACT: operator.sub,
-        Operation.MULTIPLY: operator.mul,
-        Operation.NEGATE: operator.neg,
         Operation.SQUARE: lambda x: x * x,
         Operation.LENGTH: lambda x, y: root(x * x + y * y),
         Operation.INVERSE_LENGTH: lambda x, y: 1 / root(x * x + y * y),

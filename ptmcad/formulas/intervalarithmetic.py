@@ -8,10 +8,8 @@ are equal. A run that returns False has proved that they are equal at no point o
 from __future__ import annotations
 
 from math import inf
-from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ptmcad.formulas.compilation import ONE, ZERO, compiled
 from ptmcad.formulas.graph import Operation
@@ -26,36 +24,11 @@ from ptmcad.formulas.rounding import (
     sine,
     up,
 )
-from ptmcad.formulas.tape import Tape
-
-Floats = NDArray[np.float64]
-Indices = NDArray[np.int64]
-Places = NDArray[np.uint64]
-"""Without a sign: of each signed index compiled code asks whether it is negative, which costs a
-tenth of the time.
-"""
-
-
-class Program(NamedTuple):
-    """A `Tape` as the compiled code takes it."""
-
-    operations: Indices
-    first: Places
-    second: Places
-    constant_low: Floats
-    constant_high: Floats
-
+from ptmcad.formulas.tape import Floats, Program
 
 CONSTANT, VARIABLE, ADD, SUBTRACT = (int(x) for x in list(Operation)[:4])
 MULTIPLY, SQUARE, NEGATE, SINE, COSINE = (int(x) for x in list(Operation)[4:9])
 INVERSE_LENGTH, DIRECTION, LENGTH, MEET, DIVIDE = (int(x) for x in list(Operation)[9:])
-
-
-def program(tape: Tape) -> Program:
-    """The tape as the compiled code takes it."""
-    # the -1 that stands where there is no operand is never an index
-    first, second = tape.first.astype(np.uint64), tape.second.astype(np.uint64)
-    return Program(tape.operations, first, second, tape.low, tape.high)
 
 
 @compiled

@@ -11,11 +11,39 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from math import inf, nextafter
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from ptmcad.formulas.evaluation import nodes_of
 from ptmcad.formulas.graph import Formula
+
+Floats = NDArray[np.float64]
+Indices = NDArray[np.int64]
+Places = NDArray[np.uint64]
+"""Without a sign: of each signed index compiled code asks whether it is negative, which costs a
+tenth of the time.
+"""
+NO_OPERAND = 2**64 - 1
+"""Of what has fewer than two; never an index."""
+
+
+class Program(NamedTuple):
+    """The operations of a tape, as compiled code takes them.
+
+    Attributes
+    ----------
+    operations : of `ptmcad.formulas.graph.Operation`.
+    first, second : the operands' places on the tape, or a variable's number, or `NO_OPERAND`.
+    constant_low, constant_high : enclosures of the constants, 0 elsewhere.
+    """
+
+    operations: Indices
+    first: Places
+    second: Places
+    constant_low: Floats
+    constant_high: Floats
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -24,25 +52,18 @@ class Tape:
 
     Attributes
     ----------
-    operations : int64 (n,): of `ptmcad.formulas.graph.Operation`.
-    first, second : int64 (n,): the operands' places on the tape, or a variable's number, or -1.
-    low, high : float64 (n,): enclosures of the constants, 0 elsewhere.
     constants : exact value of each constant by its place.
     stages : int64: the tape's length up to the end of each stage.
     outputs : for each stage, the places of its outputs in the order given.
     """
 
-    operations: NDArray[np.int64]
-    first: NDArray[np.int64]
-    second: NDArray[np.int64]
-    low: NDArray[np.float64]
-    high: NDArray[np.float64]
+    program: Program
     constants: dict[int, Fraction]
-    stages: NDArray[np.int64]
-    outputs: tuple[NDArray[np.int64], ...]
+    stages: Indices
+    outputs: tuple[Indices, ...]
 
     def __len__(self) -> int:
-        return len(self.operations)
+        return len(self.program.operations)
 
 
 def enclosing_floats(value: Fraction) -> tuple[float, float]:
@@ -65,8 +86,10 @@ def record(stages: Sequence[Sequence[Formula]]) -> Tape:
     place: dict[int, int] = {}
     ends, outputs = [], []
     for stage in stages:
-        for formula in stage:
-            _append(formula, order, place)
+        for formula in nodes_of(stage):
+            if formula.number not in place:
+                place[formula.number] = len(order)
+                order.append(formula)
         ends.append(len(order))
         outputs.append(np.array([place[formula.number] for formula in stage], np.int64))
     count = len(order)
@@ -76,38 +99,13 @@ def record(stages: Sequence[Sequence[Formula]]) -> Tape:
         if formula.value is not None:
             low[k], high[k] = enclosing_floats(formula.value)
             constants[k] = formula.value
-    return Tape(
+    first = [f.variable if f.a is None else place[f.a.number] for f in order]
+    second = [NO_OPERAND if f.b is None else place[f.b.number] for f in order]
+    program = Program(
         np.array([formula.operation for formula in order], np.int64),
-        np.array(
-            [
-                formula.variable if formula.a is None else place[formula.a.number]
-                for formula in order
-            ],
-            np.int64,
-        ),
-        np.array(
-            [-1 if formula.b is None else place[formula.b.number] for formula in order], np.int64
-        ),
+        np.array([NO_OPERAND if k < 0 else k for k in first], np.uint64),
+        np.array(second, np.uint64),
         low,
         high,
-        constants,
-        np.array(ends, np.int64),
-        tuple(outputs),
     )
-
-
-def _append(formula: Formula, order: list[Formula], place: dict[int, int]) -> None:
-    """Append what the formula needs and does not have yet; without recursion, formulas may be deep."""
-    waiting = [formula]
-    while waiting:
-        node = waiting[-1]
-        if node.number in place:
-            waiting.pop()
-            continue
-        missing = [n for n in (node.a, node.b) if n is not None and n.number not in place]
-        if missing:
-            waiting.extend(reversed(missing))
-            continue
-        place[node.number] = len(order)
-        order.append(node)
-        waiting.pop()
+    return Tape(program, constants, np.array(ends, np.int64), tuple(outputs))

@@ -21,7 +21,7 @@ import ptmcad
 from ptmcad.answer.location import Location
 from ptmcad.answer.regionmap import RegionMap, Status
 from ptmcad.cli import run
-from ptmcad.cover import union_area
+from ptmcad.cover.connectivity import union_area
 from ptmcad.cover.rectangles import Cover
 from ptmcad.errors import ConfigError
 from ptmcad.exact.exactmap import exact_map

@@ -66,7 +66,7 @@ def enclosed(slice: Slice, points: list[tuple[float, float]], tiles: int = 4) ->
     for curve in curves(slice, Count.STABLE):
         area = float(size.prod()) * 4.0**-7
         _, _, small, waiting, _ = search_curve(
-            curve.system.arguments(), curve.start(window), area, 3_000_000, curve.importance()
+            curve.system.arguments, curve.start(window), area, 3_000_000, curve.weights
         )
         assert len(waiting) == 0
         first, last = small[:, :2], small[:, small.shape[1] // 2 :][:, :2]

@@ -54,7 +54,8 @@ def of_cones(found: Iterable[CriticalCurve]) -> list[str]:
 
 def formulas(found: Iterable[CriticalCurve]) -> list[int]:
     """How many formulas vanish at each curve, that are tested on each box."""
-    return [sum(map(len, curve.system.vanishing)) for curve in found]
+    own = [curve.system.arguments for curve in found]
+    return [len(s.cheap) + len(s.rest) + len(s.costly) for s in own]
 
 
 def steps_of(

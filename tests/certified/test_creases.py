@@ -30,7 +30,6 @@ from ptmcad.certified.plain import criticalcurves as plain_curves
 from ptmcad.certified.plain import pointcounts as plain_points
 from ptmcad.certified.plain import straight
 from ptmcad.certified.plain.certifiedposes import point_slice
-from ptmcad.certified.plain.halfangles import located
 from ptmcad.certified.plain.pointcounts import plain_counter
 from ptmcad.certified.plain.problem import problem_of
 from ptmcad.certified.plain.straight import branches
@@ -230,7 +229,7 @@ def test_a_solution_is_alone_in_the_cube_of_the_descriptions_angles() -> None:
     found = counter.at(*origin, Count.INDEX).solutions
     assert found
     for solution in found:
-        cube, narrow = located(counter.problem, counter.equations, origin, solution, 128)
+        cube, narrow = counter.search.located(*origin, solution, 128)
         for corner in product((-1, 1), repeat=2):
             a, b = (c + side * cube.radius for c, side in zip(cube.center, corner, strict=True))
             own = a, a + b / 2

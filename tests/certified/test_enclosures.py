@@ -124,7 +124,7 @@ def fold_curves() -> list[CriticalCurve]:
 def test_contraction_discards_what_holds_none() -> None:
     """Boxes around random points off the curve, small enough to be decided."""
     rng = np.random.default_rng(9)
-    system = fold_curves()[0].system.arguments()
+    system = fold_curves()[0].system.arguments
     work = workspace(system, 4)
     gone = 0
     for _ in range(200):

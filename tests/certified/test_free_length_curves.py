@@ -90,7 +90,7 @@ def rectangles(
     parts = []
     for curve in all_curves:
         boxes = search_curve(
-            curve.system.arguments(), curve.start(window), area, 20_000, curve.importance()
+            curve.system.arguments, curve.start(window), area, 20_000, curve.weights
         ).left()
         v = boxes.shape[1] // 2
         parts.append(boxes[:, [0, 1, v, v + 1]])

@@ -65,7 +65,7 @@ def test_what_is_its_own_image() -> None:
 def left_around(curve: CriticalCurve, x: float, y: float) -> Floats:
     window = np.array([[x - 0.02, y - 0.2, x + 0.011, y + 0.3]])
     return search_curve(
-        curve.system.arguments(), curve.start(window), 1e-5, 50_000, curve.importance()
+        curve.system.arguments, curve.start(window), 1e-5, 50_000, curve.weights
     ).left()
 
 

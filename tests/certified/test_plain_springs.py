@@ -21,7 +21,7 @@ from ptmcad.certified.plain.geometry import common_factors, geometry
 from ptmcad.certified.plain.problem import Problem, problem_of
 from ptmcad.certified.plain.springchart import SpringChart, chart, principal_minors
 from ptmcad.formulas.graph import Formula, Operation
-from ptmcad.formulas.intervalarithmetic import program, run
+from ptmcad.formulas.intervalarithmetic import run
 from ptmcad.formulas.tape import record
 from ptmcad.question.config import slice_from_mapping
 from ptmcad.question.slice import Slice
@@ -60,7 +60,7 @@ def charts(record: dict[str, Any], short: int | None = None) -> tuple[Problem, S
 def values(formulas: Sequence[Formula], at: NDArray[np.float64]) -> NDArray[np.float64]:
     tape = record([formulas])
     low, high = np.empty((2, len(tape)))
-    assert run(program(tape), at, at, low, high, 0, len(tape))
+    assert run(tape.program, at, at, low, high, 0, len(tape))
     found: NDArray[np.float64] = (low[tape.outputs[0]] + high[tape.outputs[0]]) / 2
     return found
 
@@ -182,8 +182,8 @@ def test_a_matrix_that_is_not_symmetric_has_no_determinant_by_turning() -> None:
 def test_no_equation_has_a_formula_in_it_that_holds_at_equilibria_only() -> None:
     _, at = charts(PLAIN_PTM)
     tape = record([[*at.equations, at.determinant(), *(f for row in at.hessian for f in row)]])
-    assert int(Operation.MEET) not in tape.operations
-    assert int(Operation.MEET) in record([[at.determinant(at_equilibrium=True)]]).operations
+    assert int(Operation.MEET) not in tape.program.operations
+    assert int(Operation.MEET) in record([[at.determinant(at_equilibrium=True)]]).program.operations
 
 
 def test_a_spring_that_nothing_balances_tells_no_direction() -> None:
@@ -213,7 +213,7 @@ def test_a_spring_that_nothing_balances_tells_no_direction() -> None:
     tape = record(
         [[entry for row in chart(geometry(problem)).matrix_at_equilibrium() for entry in row]]
     )
-    assert int(Operation.DIVIDE) not in tape.operations
+    assert int(Operation.DIVIDE) not in tape.program.operations
 
 
 def test_equations_are_divided_by_what_is_positive_in_the_open_window() -> None:

@@ -31,7 +31,7 @@ def circle(monkeypatch: pytest.MonkeyPatch) -> list[CurveEnclosure]:
     monkeypatch.setattr(refinement, "BATCH", 4)
     graph = Graph()
     line = graph.variable(0).squared() + graph.variable(1).squared() - graph.constant(1)
-    curve = CriticalCurve("circle", "of radius 1", system([line], (0, 1)), ())
+    curve = CriticalCurve("circle", "of radius 1", system([line], (0, 1)), (), np.ones(2))
     return begin([curve], np.array([[x, 0.0, x + 0.5, 1.0] for x in np.arange(-1, 1, 0.5)]))
 
 

@@ -20,7 +20,7 @@ from ptmcad.certified.plain.geometry import geometry
 from ptmcad.certified.plain.problem import problem_of
 from ptmcad.certified.plain.springchart import SpringChart, chart
 from ptmcad.formulas.graph import Formula, Graph
-from ptmcad.formulas.intervalarithmetic import program, run
+from ptmcad.formulas.intervalarithmetic import run
 from ptmcad.formulas.tape import record
 from ptmcad.question.config import slice_from_mapping
 from ptmcad.question.slice import Count, Slice
@@ -65,7 +65,7 @@ def chart_of(slice: Slice) -> SpringChart:
 def values(formulas: list[Formula], point: list[float]) -> Floats:
     tape = record([formulas])
     low, high = np.empty((2, len(tape)))
-    assert run(program(tape), np.array(point), np.array(point), low, high, 0, len(tape))
+    assert run(tape.program, np.array(point), np.array(point), low, high, 0, len(tape))
     return np.asarray((low[tape.outputs[0]] + high[tape.outputs[0]]) / 2)
 
 
@@ -107,7 +107,7 @@ def test_a_solution_at_which_the_slope_is_zero_is_kept() -> None:
     graph = Graph()
     x, y, t = (graph.variable(k) for k in range(3))
     equations = [t * y - t, x + t * y]
-    arguments = system(equations, (0, 1, 2), solved=quotients(equations, (0, 1))).arguments()
+    arguments = system(equations, (0, 1, 2), solved=quotients(equations, (0, 1))).arguments
     assert len(arguments.solved) == 3
     for width in (0.0, 1e-9, 0.25):
         low, high = np.array([-width, 0.0, -1.0]), np.array([width, 3.0, 1.0])
@@ -123,12 +123,12 @@ def test_a_value_that_is_given_is_not_narrowed() -> None:
     number out.
     """
     curve = curves(slice_of("rho", "F", F3="F", F4="F"), Count.STABLE)[0]
-    assert set(curve.system.solved[:, 0].tolist()) == {1}
-    assert set(on_line(curve.system, 1).solved[:, 0].tolist()) == {1}
+    assert set(curve.system.arguments.solved[:, 0].tolist()) == {1}
+    assert set(on_line(curve.system, 1).arguments.solved[:, 0].tolist()) == {1}
     system = on_line(curve.system, 0)
-    assert len(system.solved) == 0
+    assert len(system.arguments.solved) == 0
     value = np.nextafter(-10.0, [-11, -9])
     low, high = np.array([0.05, value[0], -3.0, -3.0]), np.array([2.0, value[1], 3.3, 3.3])
-    arguments = system.arguments()
+    arguments = system.arguments
     contract(arguments, low, high, workspace(arguments, 4))
     assert (low[1], high[1]) == tuple(value)

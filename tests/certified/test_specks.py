@@ -10,12 +10,11 @@ import pytest
 
 pytest.importorskip("numba")
 
-from ptmcad.certified import specks
+from ptmcad.certified import covering
 from ptmcad.certified.branchandprune import Boxes
-from ptmcad.certified.covering import Lattice, box_rectangles, thinning
+from ptmcad.certified.covering import Lattice, box_rectangles, thinning, without_specks
 from ptmcad.certified.equationsystem import system
 from ptmcad.certified.refinement import CriticalCurve, CurveEnclosure, begin, refine
-from ptmcad.certified.specks import without_specks
 from ptmcad.cover import components
 from ptmcad.cover.rectangles import Cover
 from ptmcad.formulas.graph import Graph
@@ -42,7 +41,7 @@ def curves() -> list[CurveEnclosure]:
     both = circle(0.0, 1.0) * circle(AT, SMALL)
     line = x - graph.constant(1.75)
     made = [
-        CriticalCurve(name, "", system([f], (0, 1)), ())
+        CriticalCurve(name, "", system([f], (0, 1)), (), np.ones(2))
         for name, f in (("circles", both), ("line", line))
     ]
     found = begin(made, np.array([[-2.0, -2.0, 2.0, 2.0]]))
@@ -93,7 +92,7 @@ def test_where_the_budget_ends_all_is_left(monkeypatch: pytest.MonkeyPatch) -> N
     cover = LATTICE.cover(box_rectangles(enclosures))
     for name, value in (("BUDGET", 0), ("MAX_PAIRS", 0), ("MAX_SHARE", Fraction(0))):
         with monkeypatch.context() as patched:
-            patched.setattr(specks, name, value)
+            patched.setattr(covering, name, value)
             assert without_specks(components(cover), enclosures, LATTICE, AREA).cover == cover
 
 

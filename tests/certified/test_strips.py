@@ -67,7 +67,7 @@ def test_points_of_a_circle_are_in_pieces_of_its_strips(
     circle = system([x.squared() + y.squared() - graph.constant(Fraction(1)), y - t], (0, 1, 2))
     u, v = map(float, point(s))
     box = np.array([[u - width, v - width, v - width, u + width, v + width, v + width]])
-    rectangles = pieces(strips(circle.arguments(), box), area).tolist()
+    rectangles = pieces(strips(circle.arguments, box), area).tolist()
     for k in range(-40, 41):
         x0, y0 = point(s + Fraction(width) * k / 40)
         if box[0, 0] <= x0 <= box[0, 3] and box[0, 1] <= y0 <= box[0, 4]:
@@ -81,7 +81,7 @@ def test_the_finest_pieces_of_a_smooth_curve_are_as_thin_as_it_is_bent() -> None
     p, q = [Fraction(0), Fraction(1), Fraction(1, 2)], [Fraction(1), Fraction(2), Fraction(-1)]
     areas = []
     for width in (0.02, 0.01, 0.005):
-        found = strips(polynomial_curve(p, q).arguments(), box_around(p, q, 0.3, 0.3 + width))
+        found = strips(polynomial_curve(p, q).arguments, box_around(p, q, 0.3, 0.3 + width))
         rectangles = pieces(found, 0.0)
         assert len(rectangles) > 8
         exact = float(
@@ -95,7 +95,7 @@ def test_the_finest_pieces_of_a_smooth_curve_are_as_thin_as_it_is_bent() -> None
 
 def test_a_box_without_solutions_has_no_strip() -> None:
     p, q = [Fraction(0), Fraction(1)], [Fraction(0), Fraction(1)]
-    found = strips(polynomial_curve(p, q).arguments(), np.array([[0.0, 0.5, 0.0, 0.1, 0.6, 0.1]]))
+    found = strips(polynomial_curve(p, q).arguments, np.array([[0.0, 0.5, 0.0, 0.1, 0.6, 0.1]]))
     assert len(found) == 0
 
 
@@ -107,5 +107,5 @@ def test_a_box_with_an_unbounded_derivative_stays_whole() -> None:
     x, y, t = (graph.variable(k) for k in range(3))
     curve = system([x - graph.constant(Fraction(1)) / t, y - t], (0, 1, 2))
     box = np.array([[-1.0, -1.0, -1.0, 1.0, 1.0, 1.0]])
-    found = strips(curve.arguments(), box)
+    found = strips(curve.arguments, box)
     assert pieces(found, 0.0).tolist() == [[-1.0, -1.0, 1.0, 1.0]]

@@ -18,9 +18,10 @@ from numpy.typing import NDArray
 from support.covers import covers
 from support.examples import examples
 
-from ptmcad.cover import components, from_boxes, union_area
+from ptmcad.cover import components
 from ptmcad.cover.complement import outlines, samples, simplest_between
-from ptmcad.cover.lattice import combined, gathered
+from ptmcad.cover.connectivity import union_area
+from ptmcad.cover.lattice import combined, from_boxes, gathered
 from ptmcad.cover.rectangles import MAX_STEPS, Cover
 
 UNIT = ((Fraction(0), Fraction(1)), (Fraction(0), Fraction(1)))

@@ -20,7 +20,7 @@ from ptmcad.certified.linear import contract_linear, space_for
 from ptmcad.formulas.affine import CENTER, ERROR, FIRST, LANES, frame_for, run_affine, set_frame
 from ptmcad.formulas.ballarithmetic import run_arb
 from ptmcad.formulas.graph import Formula, Graph, direction, inverse_length, length, meet
-from ptmcad.formulas.intervalarithmetic import program, run
+from ptmcad.formulas.intervalarithmetic import run
 from ptmcad.formulas.tape import Tape, record
 
 Floats = NDArray[np.float64]
@@ -31,11 +31,11 @@ def forms_of(
 ) -> tuple[Floats, Floats, Floats]:
     """Middles and radii of the variables, and the forms of the tape on the box."""
     values = np.empty((2, len(tape)))
-    assert run(program(tape), low, high, values[0], values[1], 0, len(tape))
+    assert run(tape.program, low, high, values[0], values[1], 0, len(tape))
     frame = frame_for(np.array(unknowns), len(low))
     set_frame(frame, low, high)
     forms = np.zeros((len(tape) + 1, FIRST + LANES))
-    assert run_affine(program(tape), frame, values[0], values[1], forms, len(tape))
+    assert run_affine(tape.program, frame, values[0], values[1], forms, len(tape))
     return frame.middle, frame.radius, forms
 
 
@@ -185,7 +185,7 @@ def test_rows_keep_every_solution(kind: str) -> None:
     rng, kept, narrowed = random.Random(kind), 0, 0
     for _ in range(150):
         found, point = plane_system(rng, kind)
-        arguments = found.arguments()
+        arguments = found.arguments
         space, work = space_for(arguments, 4), workspace(arguments, 4)
         for width in (1.0, 0.1, 1e-3):
             low = point - width * np.array([rng.choice([0.0, 1.0, rng.random()]) for _ in range(4)])

@@ -23,7 +23,6 @@ from ptmcad.answer.poses import Pose, Poses, springs_of
 from ptmcad.answer.regionmap import Solution, Status
 from ptmcad.certified.arb_isolation import Box
 from ptmcad.certified.peaks import peaks
-from ptmcad.certified.plain.halfangles import located
 from ptmcad.certified.plain.pointcounts import BranchCounter, PlainCounter, plain_counter
 from ptmcad.certified.plain.problem import FIRST, MAX_UNKNOWNS_AT_POINTS
 from ptmcad.certified.plain.rational import Point, exact_eigenvalues, exact_values, rational_point
@@ -105,9 +104,7 @@ def boxes_of(counter: PlainCounter, solution: Solution, precision: int) -> tuple
     """A box of the mechanism's unknowns that holds a solution of a branch and no other one, and a
     narrow one.
     """
-    cube, box = located(
-        counter.problem, counter.equations, (Fraction(0), Fraction(0)), solution, precision
-    )
+    cube, box = counter.search.located(Fraction(0), Fraction(0), solution, precision)
     with ctx.workprec(precision):
         return (*box[:FIRST], *(ball(c - cube.radius, c + cube.radius) for c in cube.center)), box
 
@@ -153,15 +150,17 @@ class _Numbers:
     Attributes
     ----------
     system : compiled with these values.
-    tape : the numbers by ``names``; the Hessian's entries row by row; the energy's slopes. Without
-        a potential there is none of the latter two, nor with closed loops, where slopes of the
-        energy are not zero.
+    formulas : of the numbers by ``names``; of the Hessian's entries row by row; of the energy's
+        slopes. Without a potential there is none of the latter two, nor with closed loops, where
+        slopes of the energy are not zero.
+    tape : of the numbers and the Hessian's entries.
     """
 
     mechanism: Mechanism
     parameters: Mapping[str, Fraction]
     system: CompiledSystem
     names: tuple[str, ...]
+    formulas: tuple[Sequence[Formula], ...]
     tape: Tape
 
     @property
@@ -191,8 +190,8 @@ def numbers_at(model: Model, parameters: Mapping[str, Fraction]) -> _Numbers:
         variables = [v.variable for v in unknowns.values()]
         slopes = gradient(potential, variables)
         hessian = [entry for slope in slopes for entry in gradient(slope, variables)]
-    tape = record([list(found.values()), hessian, slopes])
-    return _Numbers(mechanism, parameters, system, tuple(found), tape)
+    formulas = (*found.values(),), hessian, slopes
+    return _Numbers(mechanism, parameters, system, tuple(found), formulas, record(formulas[:2]))
 
 
 def pose_at(
@@ -230,7 +229,10 @@ def measured(
                 held, around = (
                     dict(zip(unknowns, some[FIRST:], strict=True)) for some in (box, whole)
                 )
-                point = rational_point(at.mechanism, at.parameters, at.tape, held, around) or point
+                point = (
+                    rational_point(at.mechanism, at.parameters, at.formulas[2], held, around)
+                    or point
+                )
                 found |= _exact_numbers(at, point)
             numbers = _numbers_of(at, run_arb(at.tape, box, bits), found)
             waiting = [
@@ -245,8 +247,7 @@ def measured(
 
 def _exact_numbers(at: _Numbers, point: Point) -> dict[str, Enclosure]:
     """The numbers that are rational by these unknowns."""
-    values = exact_values(at.tape, point)
-    known, entries = ([values[int(place)] for place in outputs] for outputs in at.tape.outputs[:2])
+    known, entries = (exact_values(some, point) for some in at.formulas[:2])
     found = {name: value for name, value in zip(at.names, known, strict=True) if value is not None}
     size = isqrt(len(entries))
     rows = [entries[k : k + size] for k in range(0, len(entries), size or 1)]

@@ -13,8 +13,15 @@ from dataclasses import replace
 from ptmcad.certified.plain.curvesearch import CurveSearch, Pruning, short_lengths, variable_weights
 from ptmcad.certified.plain.geometry import geometry
 from ptmcad.certified.plain.harmonics import Angle, TrigonometricPolynomial, Unknown
-from ptmcad.certified.plain.mirrors import MirrorFrame, frames, square_of
-from ptmcad.certified.plain.omissions import CONES, DEPENDENT, SADDLES, omissions
+from ptmcad.certified.plain.mirrors import (
+    CONES,
+    DEPENDENT,
+    SADDLES,
+    MirrorFrame,
+    frames,
+    omissions,
+    square_of,
+)
 from ptmcad.certified.plain.problem import FIRST, TURN, Condition, Problem, SpringCone, problem_of
 from ptmcad.certified.plain.springchart import SpringChart, chart, principal_minors
 from ptmcad.certified.plain.straight import branches

@@ -23,7 +23,7 @@ from ptmcad.certified.plain.problem import FIRST, Condition, Problem, Range
 from ptmcad.certified.plain.springchart import SpringChart
 from ptmcad.certified.refinement import CriticalCurve
 from ptmcad.formulas.graph import Formula
-from ptmcad.formulas.intervalarithmetic import program, run
+from ptmcad.formulas.intervalarithmetic import run
 from ptmcad.formulas.tape import record
 from ptmcad.question.slice import Slice
 
@@ -198,7 +198,7 @@ def _samples(
             )
         for v, (least, most) in enumerate(ranges, 2):
             point[v] = generator.uniform(least, most)
-        run(program(tape), point, point, low, high, 0, len(tape))
+        run(tape.program, point, point, low, high, 0, len(tape))
         with np.errstate(
             over="ignore", invalid="ignore"
         ):  # those without a finite value are left out by the callers

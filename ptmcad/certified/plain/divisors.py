@@ -67,12 +67,17 @@ def common_factor(
     return factor if factor.is_constant else absolute(factor, axes) or constant(1)
 
 
+def positive_inside(polynomial: Expression, axes: tuple[Axis, Axis]) -> Expression:
+    """A polynomial, or its negative, that is positive in the middle of the window."""
+    x, y = ((axis.low + axis.high) / 2 for axis in axes)
+    return polynomial if polynomial.evaluate(x, y) > 0 else -polynomial
+
+
 def absolute(polynomial: Expression, axes: tuple[Axis, Axis]) -> Expression | None:
     """The absolute value of a polynomial that is proved to be zero nowhere in the open window; None
     without a proof.
     """
-    x, y = ((axis.low + axis.high) / 2 for axis in axes)
-    found = polynomial if polynomial.evaluate(x, y) > 0 else -polynomial
+    found = positive_inside(polynomial, axes)
     return found if decide(found, axes, Need.POSITIVE) == PROVED else None
 
 

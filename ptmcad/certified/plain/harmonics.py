@@ -12,8 +12,8 @@ True
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field, fields, is_dataclass, replace
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
 from fractions import Fraction
 from typing import Any
 
@@ -94,21 +94,7 @@ class TrigonometricPolynomial:
         ----------
         rows : for each unknown these multiples.
         """
-        columns = list(zip(*rows, strict=True))
-        return _collected(
-            [
-                (
-                    (
-                        tuple(
-                            sum(a * b for a, b in zip(m, column, strict=True)) for column in columns
-                        ),
-                        e,
-                    ),
-                    pair,
-                )
-                for (m, e), pair in self.terms.items()
-            ]
-        )
+        return _collected([((times(m, rows), e), pair) for (m, e), pair in self.terms.items()])
 
     def moved(self, images: Multi, signs: Multi, halves: Multi) -> TrigonometricPolynomial:
         """With sign_k q_image(k) + half_k pi for each unknown q_k; the images are a permutation."""
@@ -181,18 +167,10 @@ def _collected(
     )
 
 
-def mapped(part: Any, of: Callable[[TrigonometricPolynomial], Any]) -> Any:
-    """Tuples, named ones too, and data classes, nested in any way, with something else in place of
-    each polynomial.
-    """
-    if isinstance(part, TrigonometricPolynomial):
-        return of(part)
-    if isinstance(part, tuple):
-        made: Any = getattr(part, "_make", tuple)
-        return made(mapped(each, of) for each in part)
-    if is_dataclass(part) and not isinstance(part, type | Expression):
-        return replace(part, **{f.name: mapped(getattr(part, f.name), of) for f in fields(part)})
-    return part
+def times(multiples: Multi, rows: Sequence[Multi]) -> Multi:
+    """Multiples of what has these rows as multiples of others, as multiples of these."""
+    columns = zip(*rows, strict=True)
+    return tuple(sum(a * b for a, b in zip(multiples, column, strict=True)) for column in columns)
 
 
 def waves(multiples: Multi) -> tuple[TrigonometricPolynomial, TrigonometricPolynomial]:

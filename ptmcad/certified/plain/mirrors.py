@@ -1,8 +1,11 @@
 """The involutions by which the certified engine searches less, and the coordinates that one of them
-keeps, or takes to their negatives, about a component of its fixed points.
+keeps, or takes to their negatives, about a component of its fixed points; and which savings are made
+in the search for the curves of a problem.
 
 Guarantee: that of `ptmcad.model.involutions`; a problem's springs, too, are kept up to their order.
 Together the frames of an involution reach all configurations, or the image of each.
+What is left out is decided by `omissions` alone: the search leaves out what it says, and nothing
+else; the plan of a result is written from it. Loads neither numpy nor numba.
 """
 
 from __future__ import annotations
@@ -14,13 +17,19 @@ from fractions import Fraction
 from itertools import product
 from typing import Any, NamedTuple
 
-from ptmcad.certified.plain.cones import Matrix
+from ptmcad.certified.plain.geometry import Matrix, turning_directions
 from ptmcad.certified.plain.harmonics import Angle, TrigonometricPolynomial, Unknown
 from ptmcad.certified.plain.problem import TURN, Problem, Range, problem_of
 from ptmcad.formulas.graph import Formula, Graph
 from ptmcad.model.involutions import Involution, involutions
+from ptmcad.question.counts import Count
 from ptmcad.question.slice import Slice
 from ptmcad.text.expressions import Expression, constant
+
+SADDLES = "folds-of-saddles"
+CONES = "cones-and-creases"
+DEPENDENT = "dependent-equations"
+IMAGES = "mirror-images"
 
 
 def mirrors(slice: Slice, problem: Problem) -> list[Involution]:
@@ -271,3 +280,32 @@ def frames(problem: Problem, change: Involution, ranges: Sequence[Range]) -> Ite
             tuple(evens),
             tuple(reaches),
         )
+
+
+def omissions(
+    slice: Slice, problem: Problem, count: Count, without: frozenset[str]
+) -> tuple[frozenset[str], frozenset[str], tuple[Involution, ...]]:
+    """What can be left out of a problem of the slice: the names of savings of
+    `ptmcad.question.savings` that are made, and of those that could be and were switched off; and
+    the involutions about whose fixed points folds are searched.
+
+    Parameters
+    ----------
+    without : names of savings that are switched off.
+    """
+    changes = mirrors(slice, problem)
+    of_minima = problem.is_gradient and count.is_of_stable
+    dependent = not problem.closing and bool(problem.cones or turning_directions(problem))
+    is_possible = {
+        SADDLES: of_minima,
+        CONES: of_minima and bool(problem.cones),
+        DEPENDENT: dependent,
+        IMAGES: bool(changes),
+    }
+    possible = frozenset(name for name, holds in is_possible.items() if holds)
+    made = possible - without
+    if SADDLES not in made or IMAGES in made:
+        # only folds of minima alone, in the unknowns themselves, have the points at which a spring
+        # without length swallows a minimum
+        made -= {CONES}
+    return made, possible & without, tuple(changes) if IMAGES in made else ()

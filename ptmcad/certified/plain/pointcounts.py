@@ -21,7 +21,6 @@ from ptmcad.certified.branchandprune import Boxes
 from ptmcad.certified.equationsystem import EquationSystem, system
 from ptmcad.certified.peaks import peaks
 from ptmcad.certified.plain.geometry import geometry
-from ptmcad.certified.plain.halfangles import in_description
 from ptmcad.certified.plain.problem import MAX_UNKNOWNS, Problem, problem_of
 from ptmcad.certified.plain.spectrum import inertia
 from ptmcad.certified.plain.springchart import SpringChart, chart, principal_minors
@@ -29,10 +28,10 @@ from ptmcad.certified.plain.straight import branches
 from ptmcad.certified.plain.unknownranges import ranges
 from ptmcad.certified.plain.zeros import PRECISIONS, PointCount, ZeroSearch, boxed
 from ptmcad.errors import DegenerateSliceError
-from ptmcad.formulas.ballarithmetic import ball, run_arb
+from ptmcad.formulas.ballarithmetic import balls, run_arb
 from ptmcad.formulas.graph import Formula
-from ptmcad.formulas.intervalarithmetic import Indices, program, run
-from ptmcad.formulas.tape import Tape, record
+from ptmcad.formulas.intervalarithmetic import run
+from ptmcad.formulas.tape import Indices, Tape, record
 from ptmcad.model import ptm
 from ptmcad.model.criterion import by_hessian
 from ptmcad.question.counts import Count
@@ -103,7 +102,7 @@ class PlainCounter:
         kept = [k for k, sign in enumerate(signs) if not (count.is_of_stable and "-" in sign)]
         if count.is_of_stable and not is_decided:
             kept = []
-        solutions = tuple(boxed(*counted[k], signs[k], self.problem.variables) for k in kept)
+        solutions = tuple(boxed(*counted[k], signs[k]) for k in kept)
         found = PointCount(solutions=solutions, open=unclear)
         if not is_decided:
             return found
@@ -259,7 +258,7 @@ class PlainCounter:
         size, variables = len(self.problem.unknowns), len(narrow) // 2
         low, high = np.empty((2, len(self.hessian)))
         run(
-            program(self.hessian),
+            self.hessian.program,
             narrow[:variables],
             narrow[variables:],
             low,
@@ -271,8 +270,7 @@ class PlainCounter:
         if not np.isfinite(low[places]).all() or not np.isfinite(high[places]).all():
             return None
         with ctx.workprec(PRECISIONS[0]):
-            ends = ((Fraction(float(low[k])), Fraction(float(high[k]))) for k in places)
-            return inertia(arb_mat(size, size, [ball(least, most) for least, most in ends]))
+            return inertia(arb_mat(size, size, balls(low[places], high[places])))
 
     def _index(self, x: Fraction, y: Fraction, unique: Boxes) -> int | None:
         """The number of negative eigenvalues at a proved zero."""
@@ -304,7 +302,7 @@ class BranchCounter:
             own = counter.at(x, y, count, thorough=thorough)
             if not own.decided:
                 return PointCount()
-            parts.append(in_description(counter.problem, counter.equations, (x, y), own))
+            parts.append(counter.search.in_description(x, y, own))
             if not parts[-1].decided:
                 return PointCount()
         return parts[0] if len(parts) == 1 else _sum(parts)

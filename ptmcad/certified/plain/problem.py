@@ -16,6 +16,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from itertools import combinations
+from typing import NamedTuple
 
 from ptmcad.certified.plain.harmonics import Harmonics, TrigonometricPolynomial, Vector
 from ptmcad.errors import ConfigError, DegenerateSliceError
@@ -45,8 +46,7 @@ Range = tuple[float, float]
 """Of an unknown: all solutions are between its ends."""
 
 
-@dataclass(frozen=True, slots=True)
-class SpringCone:
+class SpringCone(NamedTuple):
     """A spring with a free length, or several side by side: K, and the difference d of the ends'
     coordinates.
 

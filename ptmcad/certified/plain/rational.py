@@ -1,7 +1,7 @@
 """Numbers of an equilibrium that are exact because it is a rational point, or its own mirror image.
 
 Guarantee: exact. The point is a guess, by balls. It is taken where it lies in a box that holds no
-other equilibrium and the energy's slopes, run in fractions, are zero there. Unknowns at multiples
+other equilibrium and the energy's slopes, in fractions, are zero there. Unknowns at multiples
 of a quarter turn, or zero, are taken also where a reflection is proved to leave the energy as it
 is, and the equilibrium's image lies in that box.
 """
@@ -9,14 +9,15 @@ is, and the equilibrium's image lies in that box.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from fractions import Fraction
 from math import isqrt
 
 from flint import arb, ctx
 
 from ptmcad.certified.plain.problem import FIRST
-from ptmcad.formulas.graph import OPERATORS, Operation
-from ptmcad.formulas.tape import Tape
+from ptmcad.formulas.evaluation import Substitution, values
+from ptmcad.formulas.graph import Formula, Graph, direction, inverse_length, length
 from ptmcad.model import Mechanism
 from ptmcad.model.involutions import Involution, involutions
 from ptmcad.text.balls import ball_of, exact
@@ -29,7 +30,7 @@ Point = dict[int, tuple[Fraction, ...]]
 def rational_point(
     mechanism: Mechanism,
     parameters: Mapping[str, Fraction],
-    tape: Tape,
+    slopes: Sequence[Formula],
     held: Mapping[str, arb],
     boxes: Mapping[str, arb],
 ) -> Point:
@@ -37,7 +38,7 @@ def rational_point(
 
     Parameters
     ----------
-    tape : has the energy's slopes as its last outputs.
+    slopes : of the energy, by the unknowns.
     held : balls around the equilibrium, at the context's precision.
     boxes : wider ones, which together hold no other solution.
     """
@@ -46,10 +47,9 @@ def rational_point(
         value, place = _direction(ball) if name in mechanism.angles else _real(ball)
         if ball.overlaps(place) and boxes[name].contains(2 * place - ball):
             at[number] = value
-    if len(at) == len(held) and not mechanism.moments:
-        values = exact_values(tape, at)
-        if all(values[int(place)] == 0 for place in tape.outputs[-1]):
-            return at
+    is_whole = len(at) == len(held) and not mechanism.moments
+    if is_whole and all(value == 0 for value in exact_values(slopes, at)):
+        return at
     names = dict(enumerate(held, FIRST))
     fixed = {k: value for k, value in at.items() if value[-1] == 0 or value[0] == 0}
     mirrored = {names[k]: bool(value[-1]) for k, value in fixed.items()}
@@ -63,51 +63,44 @@ def rational_point(
     return fixed if fixed and mirror in involutions(mechanism, known) else {}
 
 
-def exact_values(tape: Tape, at: Point) -> list[Fraction | None]:
-    """The tape run in fractions; None of what depends on other unknowns, or is not proved to be
-    rational.
+@dataclass(frozen=True, slots=True)
+class _AtPoint(Substitution):
+    """Formulas with the values of unknowns in their places; rational lengths are numbers, too."""
+
+    point: Point
+
+    def variable(self, number: int) -> Formula:
+        value = self.point.get(number, ())
+        return self.graph.constant(value[0]) if len(value) == 1 else self.graph.variable(number)
+
+    def cos(self, number: int) -> Formula:
+        value = self.point.get(number)
+        return self.graph.constant(value[0]) if value else self.graph.variable(number).cos()
+
+    def sin(self, number: int) -> Formula:
+        value = self.point.get(number)
+        return self.graph.constant(value[1]) if value else self.graph.variable(number).sin()
+
+    def length(self, x: Formula, y: Formula) -> Formula:
+        if x.value is None or y.value is None:
+            return length(x, y)
+        root = _root(x.value**2 + y.value**2)
+        return length(x, y) if root is None else self.graph.constant(root)
+
+    def inverse_length(self, x: Formula, y: Formula) -> Formula:
+        root = self.length(x, y)
+        return 1 / root if root.value else inverse_length(x, y)
+
+    def direction(self, x: Formula, y: Formula) -> Formula:
+        root = self.length(x, y)
+        return x / root if root.value else direction(x, y)
+
+
+def exact_values(formulas: Sequence[Formula], at: Point) -> list[Fraction | None]:
+    """The values of formulas in fractions; None of what depends on other unknowns, or is not proved
+    to be rational.
     """
-    values: list[Fraction | None] = []
-    rows = zip(
-        map(Operation, tape.operations.tolist()),
-        tape.first.tolist(),
-        tape.second.tolist(),
-        strict=True,
-    )
-    for place, (operation, first, second) in enumerate(rows):
-        if operation is Operation.CONSTANT:
-            values.append(tape.constants[place])
-        elif operation is Operation.VARIABLE:
-            values.append(at[first][0] if len(at.get(first, ())) == 1 else None)
-        elif operation in (Operation.COSINE, Operation.SINE):
-            direction = (
-                at.get(int(tape.first[first]), ())
-                if tape.operations[first] == Operation.VARIABLE
-                else ()
-            )
-            values.append(direction[operation is Operation.SINE] if len(direction) == 2 else None)
-        else:
-            values.append(_result(operation, [values[k] for k in (first, second) if k >= 0]))
-    return values
-
-
-def _result(operation: Operation, operands: Sequence[Fraction | None]) -> Fraction | None:
-    known = [operand for operand in operands if operand is not None]
-    if len(known) < len(operands):
-        return Fraction(0) if operation is Operation.MULTIPLY and 0 in known else None
-    if operation in OPERATORS:
-        return Fraction(OPERATORS[operation](*known))
-    a, b = known[0], known[-1]
-    if operation is Operation.SQUARE:
-        return a * a
-    if operation is Operation.DIVIDE:
-        return a / b if b else None
-    length = _root(a * a + b * b)
-    if operation is Operation.LENGTH:
-        return length
-    if operation is Operation.DIRECTION and a == 0 != b:
-        return a  # whatever the length is
-    return (a if operation is Operation.DIRECTION else 1) / length if length else None
+    return [formula.value for formula in values(formulas, _AtPoint(Graph(), {}, at))]
 
 
 def exact_eigenvalues(hessian: list[list[Fraction | None]]) -> list[Fraction]:

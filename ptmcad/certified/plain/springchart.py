@@ -23,10 +23,10 @@ from dataclasses import dataclass
 from itertools import combinations
 from typing import NamedTuple
 
-from ptmcad.certified.plain.cones import ConeFormulas, Matrix
-from ptmcad.certified.plain.geometry import FactoredProblem, Turn
-from ptmcad.certified.plain.harmonics import Unknown, mapped
+from ptmcad.certified.plain.geometry import ConeFormulas, FactoredProblem, Matrix, Turn
+from ptmcad.certified.plain.harmonics import TrigonometricPolynomial, Unknown
 from ptmcad.certified.plain.problem import FIRST
+from ptmcad.formulas.evaluation import mapped
 from ptmcad.formulas.graph import Formula, Graph, determinant, expression_formula, length
 
 
@@ -205,7 +205,9 @@ def chart(
 def _turned(turn: Turn, springs: Sequence[ConeFormulas], unknowns: Sequence[Unknown]) -> _Turned:
     graph, parts = unknowns[0].graph, (turn.slope, turn.bend, turn.levers)
     factor, arm = expression_formula(graph, turn.factor), expression_formula(graph, turn.arm)
-    (moment, rest), (bend, rest_bend), levers = mapped(parts, lambda f: f.formula(unknowns))
+    (moment, rest), (bend, rest_bend), levers = mapped(
+        parts, lambda f: f.formula(unknowns), TrigonometricPolynomial
+    )
     for at, (c, (x, y), (dx, dy)) in zip(springs, levers, strict=True):
         ux, uy = at.unit
         across = ux * y - uy * x

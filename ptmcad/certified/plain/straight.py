@@ -23,16 +23,18 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from itertools import product
+from typing import Any
 
-from ptmcad.certified.plain.divisors import common_divisor, quotient, square_root
+from ptmcad.certified.plain.divisors import common_divisor, positive_inside, quotient, square_root
 from ptmcad.certified.plain.harmonics import (
     Multi,
     TrigonometricPolynomial,
     Vector,
-    mapped,
+    times,
     waves,
 )
 from ptmcad.certified.plain.problem import Condition, Problem, Push, SpringCone
+from ptmcad.formulas.evaluation import mapped
 from ptmcad.question.positivity import Need, decide
 from ptmcad.question.signs import PROVED
 from ptmcad.question.slice import Axis
@@ -126,9 +128,7 @@ def _rational_norm(direction: Pair, axes: tuple[Axis, Axis]) -> Expression | Non
     norm = square_root((ex * ex + ey * ey).numerator)
     if norm is None:
         return None
-    found = Expression(norm)
-    x, y = ((axis.low + axis.high) / 2 for axis in axes)
-    return found if found.evaluate(x, y) > 0 else -found
+    return positive_inside(Expression(norm), axes)
 
 
 def _line(cone: SpringCone, axes: tuple[Axis, Axis]) -> _Line | None:
@@ -146,7 +146,7 @@ def _line(cone: SpringCone, axes: tuple[Axis, Axis]) -> _Line | None:
     )
     first = next(pair for pair in _coefficients(across, up) if any(c.numerator for c in pair))
     ex, ey = direction = _primitive(first)
-    if any(_crossed(pair, direction) for pair in _coefficients(across, up)):
+    if any((a * ey - b * ex).numerator for a, b in _coefficients(across, up)):
         return None
     squared = ex * ex + ey * ey
     if decide(squared, axes, Need.POSITIVE) != PROVED:
@@ -214,11 +214,6 @@ def _primitive(pair: Pair) -> Pair:
     )
 
 
-def _crossed(pair: Pair, direction: Pair) -> bool:
-    """Whether a vector is not along a direction."""
-    return bool((pair[0] * direction[1] - pair[1] * direction[0]).numerator)
-
-
 Rows = tuple[Multi, ...]
 """Of the description's unknowns as whole multiples of a problem's; none where these are the same.
 """
@@ -234,7 +229,10 @@ def in_half_angle(problem: Problem, turn: Multi) -> Problem:
     turn : the multiples of its angles in that sum, of which some are odd.
     """
     size, rows = range(len(turn)), _rows(turn)
-    there: Problem = mapped(problem, lambda f: f.substituted(rows))
+
+    def there(structure: Any) -> Any:
+        """With the new unknowns in the polynomials."""
+        return mapped(structure, lambda f: f.substituted(rows), TrigonometricPolynomial)
 
     def slopes(old: Sequence[TrigonometricPolynomial]) -> tuple[TrigonometricPolynomial, ...]:
         """By the new unknowns; with closed loops the last one is along these, the first ones stay
@@ -249,13 +247,17 @@ def in_half_angle(problem: Problem, turn: Multi) -> Problem:
 
     def turned(cone: SpringCone) -> SpringCone:
         across, up = (slopes(some) for some in zip(*cone.weights, strict=True))
-        return replace(cone, weights=tuple(zip(across, up, strict=True)))
+        return cone._replace(weights=tuple(zip(across, up, strict=True)))
 
     return replace(
-        there,
-        equations=slopes(there.equations),
-        cones=tuple(map(turned, there.cones)),
-        rows=_product(problem.rows, rows) if problem.rows else rows,
+        problem,
+        equations=slopes(there(problem.equations)),
+        cones=tuple(map(turned, there(problem.cones))),
+        inequalities=there(problem.inequalities),
+        stability=there(problem.stability),
+        multiples=there(problem.multiples),
+        further=there(problem.further),
+        rows=tuple(times(row, rows) for row in problem.rows) if problem.rows else rows,
     )
 
 
@@ -267,12 +269,4 @@ def _rows(turn: Multi) -> Rows:
     return tuple(
         tuple(2 * (j == k) - others.get(j, 0) if k == halved else int(j == k) for j in size)
         for k in size
-    )
-
-
-def _product(one: Rows, other: Rows) -> Rows:
-    columns = list(zip(*other, strict=True))
-    return tuple(
-        tuple(sum(a * b for a, b in zip(row, column, strict=True)) for column in columns)
-        for row in one
     )

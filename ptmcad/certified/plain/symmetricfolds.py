@@ -24,8 +24,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 
-from ptmcad.certified.plain.cones import Matrix
-from ptmcad.certified.plain.geometry import FactoredProblem
+from ptmcad.certified.plain.geometry import FactoredProblem, Matrix
 from ptmcad.certified.plain.mirrors import MirrorFrame
 from ptmcad.certified.plain.opening import (
     Coordinates,

@@ -20,8 +20,8 @@ from ptmcad.certified.plain.problem import FIRST, TURN, Problem, Range
 from ptmcad.certified.plain.springchart import chart
 from ptmcad.errors import ConfigError
 from ptmcad.formulas.graph import Formula, Graph, Operation, expression_formula, length
-from ptmcad.formulas.intervalarithmetic import Floats, program, run
-from ptmcad.formulas.tape import Tape, enclosing_floats, record
+from ptmcad.formulas.intervalarithmetic import run
+from ptmcad.formulas.tape import Floats, Tape, enclosing_floats, record
 from ptmcad.question.slice import Axis
 
 MIN_POWER, MAX_POWER = -10, 40
@@ -308,7 +308,9 @@ def is_empty(tape: Tape, box: Floats, most: int = MAX_BOXES, axes: float = 1.0) 
     """
     low, high = np.empty((2, len(tape)))
     finite = np.isfinite(box).all(axis=1)
-    used = np.isin(np.arange(len(box)), tape.first[tape.operations == Operation.VARIABLE])
+    used = np.isin(
+        np.arange(len(box)), tape.program.first[tape.program.operations == Operation.VARIABLE]
+    )
     with np.errstate(invalid="ignore"):
         # what is no more than a rounded number is not halved
         wide = box[:, 1] - box[:, 0] > MIN_SHARE * np.abs(box).max(axis=1)
@@ -320,9 +322,7 @@ def is_empty(tape: Tape, box: Floats, most: int = MAX_BOXES, axes: float = 1.0) 
         part = waiting.pop()
         treated += 1
         # a run that finds two enclosures of one number apart has proved that there is no such point
-        if not run(
-            program(tape), part[:, 0].copy(), part[:, 1].copy(), low, high, 0, len(tape)
-        ) or (
+        if not run(tape.program, part[:, 0].copy(), part[:, 1].copy(), low, high, 0, len(tape)) or (
             (low[vanishing] > 0).any()
             or (high[vanishing] < 0).any()
             or (high[nonnegative] < 0).any()

@@ -1,31 +1,34 @@
 """The zeros of a problem's equations at one rational point of a slice: a search in floats, and then
-in balls; and what a count at a point says.
+in balls; what a count at a point says; and solutions in half angles, placed in the unknowns of the
+description.
 
 Guarantee: each box holds exactly one zero, each zero has one, and there are no others but in what
 is left open. When a `PointCount` is decided, each solution (where stable ones alone are counted,
 each of these) has its own box, proved to hold exactly one, and it is proved that there are no
-others. What is not proved is undecided.
+others. What is not proved is undecided. A cube that is placed holds its solution, and no other one.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from fractions import Fraction
-from math import frexp, inf
+from math import frexp
 
 import numpy as np
-from flint import ctx
+from flint import arb, ctx, fmpq, fmpq_mat, fmpz_mat
 
 from ptmcad.answer.counts import Counted, MorseIndex
 from ptmcad.answer.regionmap import Solution
-from ptmcad.certified.arb_isolation import Box, isolate_arb
+from ptmcad.certified.arb_isolation import Box, isolate_arb, refined
 from ptmcad.certified.branchandprune import Boxes, SearchResult, isolate
 from ptmcad.certified.equationsystem import Arguments, EquationSystem
 from ptmcad.certified.plain.problem import FIRST, MAX_UNKNOWNS, Problem, Range
 from ptmcad.certified.uniqueness import FULL_TURN, distinct
-from ptmcad.formulas.ballarithmetic import ball, lower, upper
+from ptmcad.formulas.ballarithmetic import ball, balls, lower, upper
 from ptmcad.formulas.tape import enclosing_floats
+from ptmcad.text.balls import ball_of, exact
+from ptmcad.text.flint_numbers import to_fraction
 
 MANY_BOXES = 6_000_000
 """Boxes in floating point for one point where there are more than `MAX_UNKNOWNS` unknowns: about
@@ -73,7 +76,7 @@ class ZeroSearch:
         (x_low, x_high), (y_low, y_high) = enclosing_floats(x), enclosing_floats(y)
         low, high = zip(*self.ranges, strict=True)
         start = np.array([[x_low, y_low, *low, x_high, y_high, *high]])
-        arguments = system.arguments()
+        arguments = system.arguments
         for finest in MIN_BOX_WIDTHS if thorough else MIN_BOX_WIDTHS[:1]:
             found = self._isolated(arguments, start, finest, thorough)
             if not len(found.left()):
@@ -94,7 +97,7 @@ class ZeroSearch:
         """What a search finds in boxes no finer than that; a thorough one goes on where a budget ends,
         with more than three unknowns for longer.
         """
-        equations, weights = self.equations.arguments(), np.ones(start.shape[1] // 2)
+        equations, weights = self.equations.arguments, np.ones(start.shape[1] // 2)
         most = MANY_BOXES if len(self.problem.unknowns) > MAX_UNKNOWNS else BUDGET
         part = BUDGET if thorough else QUICK_BUDGET
         found = isolate(arguments, equations, start, (finest, part, MAX_OPEN_BOXES), weights)
@@ -137,29 +140,75 @@ class ZeroSearch:
 
     def box(self, x: Fraction, y: Fraction, box: Boxes) -> Box:
         """A box over the point in balls of the precision that is set."""
-        ends = [
-            (Fraction(float(box[k])), Fraction(float(box[k + len(box) // 2])))
-            for k in self.problem.variables
-        ]
-        return (ball(x, x), ball(y, y), *(ball(low, high) for low, high in ends))
+        low, high = np.split(box, 2)
+        return (ball(x, x), ball(y, y), *balls(low[FIRST:], high[FIRST:]))
+
+    def located(
+        self, x: Fraction, y: Fraction, solution: Solution, precision: int
+    ) -> tuple[Solution, Box]:
+        """The cube of the description's unknowns in which a solution is the only one, and a narrow
+        box around that.
+
+        Parameters
+        ----------
+        solution : alone in a cube of the problem's unknowns, in which all inequalities of its
+            branch are positive.
+        """
+        rows = self.problem.rows
+        with ctx.workprec(precision):
+            unknowns = (ball(c - solution.radius, c + solution.radius) for c in solution.center)
+            own = ball(x, x), ball(y, y), *unknowns
+        narrow = refined(self.equations, own, precision)
+        if not rows:
+            return solution, narrow
+        center = tuple(
+            sum((c * u for c, u in zip(row, solution.center, strict=True)), Fraction(0))
+            for row in rows
+        )
+        # the problem's unknowns of a cube so much smaller are all in the given one
+        inverse = fmpq_mat(fmpz_mat([list(row) for row in rows])).inv().tolist()
+        radius = solution.radius / to_fraction(max(sum(map(abs, row), fmpq(0)) for row in inverse))
+        with ctx.workprec(precision):
+            image = (
+                sum((c * u for c, u in zip(row, narrow[FIRST:], strict=True)), arb(0))
+                for row in rows
+            )
+            return Solution(center, radius, solution.signs), (*narrow[:FIRST], *image)
+
+    def in_description(self, x: Fraction, y: Fraction, counts: PointCount) -> PointCount:
+        """Counts with their solutions in the description's unknowns; undecided where these are too
+        near.
+        """
+        if not self.problem.rows:
+            return counts
+        found = []
+        for solution in counts.solutions:
+            cube, narrow = self.located(x, y, solution, PRECISIONS[0])
+            placed = _within_a_turn(cube, narrow, self.problem.is_angle)
+            if placed is None:
+                return PointCount()
+            found.append(placed)
+        return replace(counts, solutions=tuple(found))
 
 
 def _in_floats(unique: Box, narrow: Box, around: Boxes) -> tuple[list[float], list[float]] | None:
     """Its boxes, the wide one rounded inward and the narrow one outward; None where these meet."""
-    wide = low, high = [list(map(float, some)) for some in np.split(around, 2)]
-    least, most = list(low), list(high)
-    for k in range(FIRST, len(low)):
-        low[k], high[k] = (
-            enclosing_floats(lower(unique[k]))[1],
-            enclosing_floats(upper(unique[k]))[0],
+    ends = [
+        (
+            enclosing_floats(lower(wide))[1],
+            enclosing_floats(lower(own))[0],
+            enclosing_floats(upper(own))[1],
+            enclosing_floats(upper(wide))[0],
         )
-        least[k], most[k] = (
-            enclosing_floats(lower(narrow[k]))[0],
-            enclosing_floats(upper(narrow[k]))[1],
-        )
-        if not low[k] < least[k] <= most[k] < high[k]:
-            return None
-    return [end for ends in wide for end in ends], [*least, *most]
+        for wide, own in zip(unique[FIRST:], narrow[FIRST:], strict=True)
+    ]
+    if not all(low < least <= most < high for low, least, most, high in ends):
+        return None
+    (low, least, most, high), (first, last) = (
+        zip(*ends, strict=True),
+        (some[:FIRST].tolist() for some in np.split(around, 2)),
+    )
+    return [*first, *low, *last, *high], [*first, *least, *last, *most]
 
 
 QUICK_BUDGET = 6_000
@@ -197,24 +246,20 @@ class PointCount(Counted):
     further: Mapping[str, int] = field(default_factory=dict)
 
 
-def boxed(unique: Boxes, narrow: Boxes, signs: str, unknowns: Sequence[int]) -> Solution:
-    """A cube between the two boxes, its radius a power of two.
+def boxed(unique: Boxes, narrow: Boxes, signs: str) -> Solution:
+    """A cube of the unknowns between the two boxes, its radius a power of two.
 
     Parameters
     ----------
     unique, narrow : shape (2v,): low ends, then high ends; ``narrow`` lies in ``unique``.
-    unknowns : numbers of the variables that the cube has, in order.
     """
-    variables = len(narrow) // 2
-    center = [0.5 * (narrow[k] + narrow[k + variables]) for k in unknowns]
-    room = inf
-    need = 0.0
-    for c, k in zip(center, unknowns, strict=True):
-        room = min(room, c - unique[k], unique[k + variables] - c)
-        need = max(need, c - narrow[k], narrow[k + variables] - c)
-    return Solution(
-        tuple(map(Fraction, center)), radius_between(Fraction(need), Fraction(room)), signs
+    (low, high), (least, most) = (
+        [ends[FIRST:] for ends in np.split(box, 2)] for box in (unique, narrow)
     )
+    center = 0.5 * (least + most)
+    room, need = np.minimum(center - low, high - center), np.maximum(center - least, most - center)
+    radius = radius_between(Fraction(float(need.max())), Fraction(float(room.min())))
+    return Solution(tuple(map(Fraction, center.tolist())), radius, signs)
 
 
 def radius_between(need: Fraction, room: Fraction) -> Fraction:
@@ -224,3 +269,23 @@ def radius_between(need: Fraction, room: Fraction) -> Fraction:
     _, exponent = frexp(float(room)) if room > Fraction(1, 2**1000) else (0.0, -1000)
     radius = Fraction(2) ** (exponent - 3)
     return radius if need <= radius else room
+
+
+def _within_a_turn(cube: Solution, narrow: Box, is_angle: Sequence[bool]) -> Solution | None:
+    """The same in a cube whose center has no angle beyond half a turn; None where the box is not
+    narrow enough.
+    """
+    with ctx.workprec(PRECISIONS[0]):
+        center, need, room = list[Fraction](), arb(0), ball_of(cube.radius)
+        for whole, found, angle in zip(
+            map(ball_of, cube.center), narrow[FIRST:], is_angle, strict=True
+        ):
+            turns = round(float(whole) / FULL_TURN) * 2 * arb.pi() if angle else arb(0)
+            center.append(Fraction(float(found - turns)))
+            need = need.max(abs(found - turns - ball_of(center[-1])))
+            room = room.min(ball_of(cube.radius) - abs(whole - turns - ball_of(center[-1])))
+        if not need < room:
+            return None
+        return Solution(
+            tuple(center), radius_between(exact(need.upper()), exact(room.lower())), cube.signs
+        )
