@@ -248,7 +248,7 @@ def compiled_with(model: Model, variables: Mapping[str, Formula]) -> CompiledSys
     if mechanism is model:
         return _of_slopes(known)
     if mechanism.xjoints:
-        found = crossed.conditions(mechanism, ring)
+        found = crossed.conditions(mechanism, variables)
     else:
         found = _of_loops(known, mechanism, ring)
     equations, stability, tangent, further = found

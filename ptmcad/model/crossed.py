@@ -18,7 +18,7 @@ So the Hessian is positive definite where the leading principal minors of the Ja
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from fractions import Fraction
 from math import prod
 from typing import Any, Generic, NamedTuple, TypeVar
@@ -31,7 +31,7 @@ from ptmcad.model.description import Mechanism
 from ptmcad.model.evaluate import Named, Ring, evaluate, evaluated
 from ptmcad.model.identities import Polynomial, PolynomialRing
 from ptmcad.model.termbounds import MAX_TERMS, TOO_LARGE
-from ptmcad.model.work import split_moments, tree_of
+from ptmcad.model.work import split_moments
 
 V = TypeVar("V")
 P = TypeVar("P")
@@ -80,13 +80,13 @@ def follower(joint: XJoint, ring: Ring[Any], leader: V, variable: V) -> Follower
     return Follower(leader, variable, *turned)
 
 
-def conditions(mechanism: Mechanism, variables: Ring[Formula]) -> Conditions:
+def conditions(mechanism: Mechanism, variables: Mapping[str, Formula]) -> Conditions:
     """What holds at equilibria in the unknowns alone, multiplied out: the equations are the e_i.
 
     Parameters
     ----------
     mechanism : with X-joints, and without free lengths.
-    variables : the ring of formulas, which has all variables by their names.
+    variables : all by their names.
 
     Raises
     ------
@@ -106,16 +106,12 @@ def conditions(mechanism: Mechanism, variables: Ring[Formula]) -> Conditions:
     most = prod(max(len(entry.terms) for entry in row) for row in rows)
     if sum(len(e.terms) for e in equations) > MAX_TERMS or most > MAX_MINOR:
         raise ExpressionError(f"{TOO_LARGE}; numbers for lengths make it smaller")
-
-    def formulas(some: Iterable[Polynomial]) -> tuple[Formula, ...]:
-        return evaluated([tree_of(p, mechanism.angles) for p in some], variables)
-
-    hessian = [formulas(row) for row in rows]
+    hessian = [tuple(_formula(entry, variables) for entry in row) for row in rows]
     return (
-        formulas(equations),
+        tuple(_formula(e, variables) for e in equations),
         tuple(determinant([row[:k] for row in hessian[:k]]) for k in range(1, len(hessian) + 1)),
         (),
-        formulas(b.below for b in bars if len(bars) > 1),
+        tuple(_formula(b.below, variables) for b in bars if len(bars) > 1),
     )
 
 
@@ -137,6 +133,23 @@ def _equations(
             )
             slopes[bar.leader] = bar.below * slopes[bar.leader] - turned
     return list(slopes.values())
+
+
+def _formula(p: Polynomial, variables: Mapping[str, Formula]) -> Formula:
+    """A polynomial as a sum of products."""
+    total = next(iter(variables.values())).graph.constant(0)
+    for monomial, c in sorted(p.terms.items()):
+        term = total.graph.constant(c)
+        for name, e in monomial:
+            function, _, own = name.rpartition(" ")
+            variable = variables[own]
+            factor = (
+                variable.cos() if function == "cos" else variable.sin() if function else variable
+            )
+            for _ in range(e):
+                term = term * factor
+        total = total + term
+    return total
 
 
 def _degree(p: Polynomial, angle: str) -> int:
