@@ -18,7 +18,6 @@ from flint import fmpq
 from ptmcad.algebra.bases import plan_text
 from ptmcad.algebra.fibre_algebra import WorkLimit
 from ptmcad.ask.classification import check_flat_loops, check_taken, flat_loops
-from ptmcad.ask.engines import is_certified
 from ptmcad.ask.forecast import (
     QUICK,
     Forecast,
@@ -38,6 +37,7 @@ from ptmcad.exact.stages import SliceProblem, problem_of, prove_regular
 from ptmcad.exact.witness import SHARES, points
 from ptmcad.model import ptm
 from ptmcad.model.closed import terms_of
+from ptmcad.options import is_certified
 from ptmcad.question.domain import proved
 from ptmcad.question.slice import Slice, merged
 from ptmcad.text.flint_numbers import from_fraction

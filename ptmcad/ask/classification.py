@@ -19,11 +19,10 @@ from typing import TYPE_CHECKING
 
 from ptmcad.answer.regionmap import RegionMap, Status
 from ptmcad.answer.timings import with_compilation
-from ptmcad.ask.engines import is_certified
 from ptmcad.errors import ConfigError, LimitReached, expect, quoted
 from ptmcad.model import ptm
 from ptmcad.model.description import looped
-from ptmcad.options import Options, Progress
+from ptmcad.options import Options, Progress, is_certified
 from ptmcad.process.memory import loading
 from ptmcad.question.config import slice_from
 from ptmcad.question.counts import Count

@@ -77,7 +77,7 @@ def command(*, record: Path, limits: ResourceLimits) -> int:
                 f"{'design':<12}{designed.maximise}{of} over {over}; above is the record without it"
             )
         if sweeping is not None:
-            from ptmcad.workbench.sweeps.estimate import sweep_text
+            from ptmcad.workbench.sweeps.run import sweep_text
 
             for line in sweep_text(sweeping, found):
                 click.echo(line)

@@ -13,7 +13,6 @@ import click
 from ptmcad.answer.plan import own_steps
 from ptmcad.answer.timings import with_compilation
 from ptmcad.answer.words import several
-from ptmcad.ask.engines import is_certified
 from ptmcad.cli.commonoptions import (
     Idle,
     file_option,
@@ -46,7 +45,7 @@ from ptmcad.cli.slices import (
 )
 from ptmcad.errors import ConfigError, LimitReached, blamed
 from ptmcad.model import ptm
-from ptmcad.options import Options
+from ptmcad.options import Options, is_certified
 from ptmcad.process.handover import Topic, send, watched
 from ptmcad.process.output import check_writable, how_to_go_on, save_stopped
 from ptmcad.question.config import Family

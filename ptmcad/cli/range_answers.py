@@ -104,7 +104,7 @@ def _answers(
         found = intervals(slice, along, at, digits=digits)
         yield found, linetable.table(found, digits), "", partial(_drawn, "draw_range", slice, found)
     if request.over:
-        from ptmcad.ask.lines.rangerows import operation_widths
+        from ptmcad.ask.lines.along import operation_widths
 
         with ProgressBar() as progress:
             found = operation_widths(slice, along, request.rows, digits, progress)

@@ -274,7 +274,7 @@ def _verified_design(
     from ptmcad.question.config.designkey import design_from
     from ptmcad.show.document.designdocument import extremes_codec
     from ptmcad.verification import VerifyReport, check_anew, verify_design
-    from ptmcad.workbench.designs.proof import exact_maximum
+    from ptmcad.workbench.designs.designbounds import exact_maximum
 
     report = verify_design(found, seed, progress)
     if not report.ok or not found.maxima:
@@ -299,8 +299,7 @@ def _versions_in(path: Path) -> Any:
 
 def _verified_poses(stored: Poses, versions: Any, progress: Progress) -> VerifyReport:
     """The poses at a point, and all that is said of each."""
-    from ptmcad.ask.manyangles import FEW
-    from ptmcad.ask.solving import poses_at
+    from ptmcad.ask.solving import FEW, poses_at
     from ptmcad.verification import VerifyReport, check_anew, verify_poses
     from ptmcad.verification.poseclaims import RIGHTLY, in_same_order
 

@@ -22,10 +22,17 @@ from ptmcad.question.config.designkey import design_from
 from ptmcad.question.shipped import RecordSource
 from ptmcad.text.flint_numbers import simplest_fraction
 from ptmcad.text.parsing import share_for
-from ptmcad.workbench.designs.designbounds import Lengths, bounded, bounder_of
+from ptmcad.workbench.designs.designbounds import (
+    Lengths,
+    Proof,
+    bounded,
+    bounder_of,
+    exact_maximum,
+    most_on_lines,
+    place_of,
+)
 from ptmcad.workbench.designs.evaluation import Evaluate, Value, evaluator
 from ptmcad.workbench.designs.optimiser import Point, best_of, within
-from ptmcad.workbench.designs.proof import Proof, exact_maximum, most_on_lines, place_of
 
 TOLERANCE = Fraction(1, 100)
 BOXES = 100_000

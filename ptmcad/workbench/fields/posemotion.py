@@ -24,10 +24,9 @@ import numpy as np
 from ptmcad.answer.boundaries import NONE
 from ptmcad.answer.motion import Fall, Motion, Place, Step
 from ptmcad.answer.regionmap import RegionMap, Status
-from ptmcad.ask.fields.course import corners_of
 from ptmcad.ask.fields.descent import descent
 from ptmcad.ask.fields.equations import Floats, apart, unknowns_of
-from ptmcad.ask.fields.track import MIN_STEP, Track, followed
+from ptmcad.ask.fields.track import MIN_STEP, Track, corners_of, followed
 from ptmcad.ask.location import locate
 from ptmcad.errors import ConfigError, PtmcadError, expect
 from ptmcad.options import Progress
