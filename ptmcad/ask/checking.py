@@ -172,15 +172,10 @@ def _is_large(slice: Slice) -> bool:
 
 
 def _check_certified(slice: Slice) -> None:
-    """Refuse what the certified engine refuses before it searches."""
-    check_taken(slice)
-    _check_bounded(slice)
-
-
-def _check_bounded(slice: Slice) -> None:
-    """Refuse free lengths where no bounds of lengths that are unknown are known, as the certified
-    engine does.
+    """Refuse what the certified engine refuses before it searches: also free lengths where no
+    bounds of unknown lengths are known.
     """
+    check_taken(slice)
     if slice.model == ptm() or not slice.model.reals:
         return
     from ptmcad.certified.plain.problem import problem_of as problem_in_intervals

@@ -216,8 +216,7 @@ def _side(result: RegionMap) -> _Side:
     ConfigError
         When it contradicts itself.
     """
-    assert result.cover is not None
-    complement, cells = component_cells(result, result.cover)
+    complement, cells = component_cells(result)
     region_of = {
         place: result.cells[cell].region for place, cell in cells.items() if place is not None
     }

@@ -109,9 +109,7 @@ def poses_at(model: Model, parameters: Numbers, digits: int) -> Poses:
         For springs with a free length in a mechanism that the certified engine does not take.
     """
     if needs_intervals(model, parameters):
-        with loading("the certified engine"):
-            from ptmcad.certified.plain.certifiedposes import plain_poses
-        return plain_poses(model, parameters, digits)
+        return _poses_by_search(model, parameters, digits)
     from ptmcad.exact.exactposes import exact_poses
 
     given = {n: v for n, v in parameters.items() if n not in model.free_lengths}
@@ -121,7 +119,7 @@ def poses_at(model: Model, parameters: Numbers, digits: int) -> Poses:
     except LimitReached:
         if most is None:
             raise
-    found = poses_by_search(model, parameters, digits)
+    found = _poses_by_search(model, parameters, digits)
     more = work_by_msolve() if found.status is Status.UNDECIDED else None
     try:
         return found if more is None else exact_poses(model, given, digits, more)
@@ -217,10 +215,10 @@ def _clock(tried: str, timeout: float | None) -> Callable[[], None]:
     return pause
 
 
-def poses_by_search(mechanism: Model, point: Mapping[str, Fraction], digits: int) -> Poses:
+def _poses_by_search(model: Model, point: Numbers, digits: int) -> Poses:
     """All equilibria at a point, by the certified engine; UNDECIDED where they were not all
     separated.
     """
     with loading("the certified engine"):
         from ptmcad.certified.plain.certifiedposes import plain_poses
-    return plain_poses(mechanism, point, digits)
+    return plain_poses(model, point, digits)

@@ -117,7 +117,7 @@ def classify_to_files(slice: Slice, options: Options, output: Output, spent: flo
                 raise
             # first: if this process is ended now, the other one has it
             text = _hand_over(stopped.partial, slice.name, output)
-            beside = names_of(slice.name, output.among((*PICTURES, *DATA)))
+            beside = names_of(slice.name, output.drawn)
             place, why = save_stopped(output.out / f"{slice.name}.json", text, beside=beside)
             where = f"partial map{_open_share(stopped.partial)} saved to {place}{why}"
             further = "" if getattr(stopped.partial, "cover", None) is None else how_to_go_on(place)
@@ -144,7 +144,7 @@ def _hand_over(result: Any, name: str, output: Output) -> str:
         state = "partial" if result.status.value == "partial" else "complete"
         place, beside = (
             str(output.out / f"{name}.json"),
-            names_of(name, output.among((*PICTURES, *DATA))),
+            names_of(name, output.drawn),
         )
         send(Topic.RESULT, state, text, _open_share(result), place, *beside)
     return text
@@ -162,7 +162,7 @@ def _save(result: Any, name: str, output: Output) -> None:
     text = _hand_over(result, name, output) if file else ""
     write_result(
         output.out,
-        output.drawing.writers(result, name, output.among((*PICTURES, *DATA))),
+        output.drawing.writers(result, name, output.drawn),
         file,
         text,
     )

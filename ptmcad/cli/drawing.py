@@ -217,6 +217,11 @@ class Output(NamedTuple):
         """The formats that are of some kind."""
         return tuple(kind for kind in self.formats if kind in known)
 
+    @property
+    def drawn(self) -> Formats:
+        """The formats of pictures and tables of one map."""
+        return self.among((*PICTURES, *DATA))
+
     def text(self, result: Any) -> str:
         """The result's JSON."""
         text: str = result.to_json(timings=not self.no_timings)

@@ -43,6 +43,7 @@ from ptmcad.errors import ConfigError, blamed, shown, shown_path
 from ptmcad.process.output import Writer, check_writable, write_files
 from ptmcad.question.config import point_from_mapping, portable_file
 from ptmcad.question.counts import Shades
+from ptmcad.question.slice import Point
 from ptmcad.show import render
 from ptmcad.show.style import LegendPlace
 from ptmcad.show.table import count_text, index_text
@@ -165,7 +166,7 @@ def _agreement(result: RegionMap, at: Place, count: str) -> Agreement:
     """Whether the map has this count there; untold where it, or the file, has none."""
     from ptmcad.show.render.overlay import Agreement
 
-    location = result.locate(**dict(zip(result.slice.axis_names, at, strict=True)))
+    location = result.locate(Point(result.slice.axis_names, *at))
     if (
         not count
         or location.region is None

@@ -36,6 +36,7 @@ from ptmcad.ask.fields.equations import (
     parameters_at,
     state_at,
 )
+from ptmcad.ask.pixels import at_pixels
 from ptmcad.model import Model
 
 BATCH = 300
@@ -80,9 +81,8 @@ class PixelSolver:
     def __init__(self, result: RegionMap, x: Floats, y: Floats, cell: Integers):
         self.result, self.model = result, result.slice.model
         self.x, self.y, self.cell = x, y, cell
-        counts = [c.stable if result.only_stable else c.total for c in result.cells]
-        table = np.array([*(NONE if v is None else v for v in counts), NONE], dtype=np.int64)
-        self.total: Integers = table[cell]
+        counts = (c.stable if result.only_stable else c.total for c in result.cells)
+        self.total: Integers = at_pixels(counts, cell)
         self.values = parameters_at(result.slice, x, y)
         self.angles = len(self.model.angles)
         most = max(int(self.total.max()), 1)

@@ -31,7 +31,7 @@ from ptmcad.ask.location import locate
 from ptmcad.errors import ConfigError, PtmcadError, expect
 from ptmcad.options import Progress
 from ptmcad.question.shipped import FIRST, SECOND
-from ptmcad.question.slice import within_doubles
+from ptmcad.question.slice import Point, within_doubles
 from ptmcad.text.numerals import equalities
 from ptmcad.workbench.fields.pixelsolver import filled
 from ptmcad.workbench.fields.quantityfield import Choice, choice_of, complete, exact_at
@@ -108,7 +108,7 @@ are not known.
 
 def _cell(result: RegionMap, at: Place) -> int:
     """The number of the cell at a point; `NONE` on curves, and where the map leaves it open."""
-    cell = locate(result, dict(zip(result.slice.axis_names, at, strict=True))).cell
+    cell = locate(result, Point(result.slice.axis_names, *at)).cell
     return NONE if cell is None else cell
 
 
