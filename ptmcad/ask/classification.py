@@ -295,15 +295,14 @@ def check_resumable(slice: Slice, earlier: RegionMap) -> None:
             key="resume",
         )
     other = earlier.slice
+    parts = {"mechanism": "model", "axes": "axes", "count": "count"}
     different = [
-        *(["mechanism"] if other.model != slice.model else []),
-        *(["axes"] if other.axes != slice.axes else []),
-        *(["count"] if other.count is not slice.count else []),
-        *(
-            n
-            for n in dict.fromkeys((*slice.parameters, *other.parameters))
-            if slice.parameters.get(n) != other.parameters.get(n)
-        ),
+        name for name, part in parts.items() if getattr(other, part) != getattr(slice, part)
+    ]
+    different += [
+        n
+        for n in dict.fromkeys((*slice.parameters, *other.parameters))
+        if slice.parameters.get(n) != other.parameters.get(n)
     ]
     if different:
         raise ConfigError(

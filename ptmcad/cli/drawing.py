@@ -67,12 +67,10 @@ def _reason(error: Exception) -> str:
         return f"--{error.key.replace('_', '-')}: {error.message}"
     if isinstance(error, PtmcadError):
         return str(error)
-    said = (error.strerror if isinstance(error, OSError) else None) or str(error)
-    return (
-        said
-        if isinstance(error, OSError)
-        else f"drawing failed unexpectedly{f': {said}' if said else ''}"
-    )
+    said = str(error)
+    if isinstance(error, OSError):
+        return error.strerror or said
+    return f"drawing failed unexpectedly{said and f': {said}'}"
 
 
 def write_result(

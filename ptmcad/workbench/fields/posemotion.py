@@ -237,10 +237,8 @@ def _walked(
 
 
 def _where(walk: Track, share: float) -> str:
-    at = walk.place(share)
-    return ", ".join(
-        f"{n} = {float(v):.6g}" for n, v in zip(walk.slice.axis_names, at, strict=True)
-    )
+    at = map(float, walk.place(share))
+    return equalities(dict(zip(walk.slice.axis_names, at, strict=True)), "{:.6g}".format)
 
 
 def _taken(walk: Track, stop: _Stop, at: Floats) -> Step:
