@@ -6,8 +6,13 @@ from pathlib import Path
 
 import click
 
-from ptmcad.cli.commonoptions import record_argument
-from ptmcad.cli.limits import ResourceLimits, clock_stopped, held, limit_options
+from ptmcad.cli.commonoptions import (
+    ResourceLimits,
+    clock_stopped,
+    held,
+    limit_options,
+    record_argument,
+)
 from ptmcad.cli.progress import ProgressBar
 from ptmcad.errors import MAX_FAULTS, ConfigError, Faults, HypothesisError
 from ptmcad.question.config import Family, with_place

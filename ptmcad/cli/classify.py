@@ -15,9 +15,13 @@ from ptmcad.answer.timings import with_compilation
 from ptmcad.answer.words import several
 from ptmcad.cli.commonoptions import (
     Idle,
+    ResourceLimits,
+    clock_stopped,
     file_option,
     gathered,
+    held,
     idle_drawing,
+    limit_options,
     out_option,
     reading,
     report_idle,
@@ -33,7 +37,6 @@ from ptmcad.cli.drawing import (
     share_of,
     write_result,
 )
-from ptmcad.cli.limits import ResourceLimits, clock_stopped, held, limit_options
 from ptmcad.cli.progress import ProgressBar
 from ptmcad.cli.slices import (
     Third,

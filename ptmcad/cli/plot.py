@@ -19,9 +19,12 @@ from ptmcad.cli.commonoptions import (
     PATH,
     Formats,
     Idle,
+    ResourceLimits,
     file_option,
     gathered,
+    held,
     idle_drawing,
+    limit_options,
     report_idle,
     result_argument,
 )
@@ -35,7 +38,6 @@ from ptmcad.cli.drawing import (
     names_of,
 )
 from ptmcad.cli.familyfiles import mesh_writers, picture_writers, read_family_file
-from ptmcad.cli.limits import ResourceLimits, held, limit_options
 from ptmcad.cli.locate import point_of, rows_of
 from ptmcad.cli.progress import ProgressBar
 from ptmcad.cli.storedresults import kind_of, read_result, stored_in

@@ -22,9 +22,14 @@ from ptmcad.answer.family import FamilyMap
 from ptmcad.answer.poses import Poses
 from ptmcad.answer.regionmap import RegionMap, Status
 from ptmcad.answer.sweep import Bounds, Member, Summary
-from ptmcad.cli.commonoptions import report_idle, result_argument
+from ptmcad.cli.commonoptions import (
+    ResourceLimits,
+    held,
+    limit_options,
+    report_idle,
+    result_argument,
+)
 from ptmcad.cli.familyfiles import read_family_file
-from ptmcad.cli.limits import ResourceLimits, held, limit_options
 from ptmcad.cli.progress import ProgressBar
 from ptmcad.cli.storedresults import MAX_BYTES, is_record, kind_of, read_other, read_result
 from ptmcad.errors import ConfigError, LimitReached
