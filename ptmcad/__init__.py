@@ -24,9 +24,8 @@ if TYPE_CHECKING:
     from ptmcad.answer.sweep import Sweep
     from ptmcad.ask.changes import changes
     from ptmcad.ask.classification import classify
-    from ptmcad.ask.lines.along import intervals
+    from ptmcad.ask.lines.along import intervals, operation_widths
     from ptmcad.ask.lines.follower import pose_paths
-    from ptmcad.ask.lines.rangerows import operation_widths
     from ptmcad.ask.solving import solve
     from ptmcad.ask.stepwise import counts_at, discriminant_variety, open_cad
     from ptmcad.exact.eliminationsystem import slice_variety
@@ -67,7 +66,7 @@ _HOMES = {
     "Sweep": "answer.sweep",
     "sweep": "workbench.sweeps.run",
     "intervals": "ask.lines.along",
-    "operation_widths": "ask.lines.rangerows",
+    "operation_widths": "ask.lines.along",
     "pose_paths": "ask.lines.follower",
     "RegionMap": "answer.regionmap",
     "Count": "question.counts",

@@ -13,6 +13,7 @@ from types import NoneType
 
 from ptmcad.answer.regionmap import RegionMap
 from ptmcad.errors import ConfigError, expect
+from ptmcad.question.slice import Slice
 from ptmcad.text.syntax import did_you_mean
 
 ENGINES = ("auto", "exact", "certified")
@@ -79,3 +80,11 @@ class Options:
 
 
 DEFAULTS = Options()
+
+
+def is_certified(slice: Slice, engine: str) -> bool:
+    """Whether the choice ``"exact"``, ``"certified"`` or ``"auto"`` means the certified engine for
+    a slice.
+    """
+    only = slice.has_free_lengths or slice.count.kind.predicate is not None
+    return engine == "certified" or (engine == "auto" and only)

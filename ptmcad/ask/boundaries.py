@@ -20,7 +20,6 @@ from ptmcad.answer.boundaries import Boundary
 from ptmcad.answer.regionmap import RegionMap
 from ptmcad.ask.location import component_cells
 from ptmcad.cover.complement import outlines
-from ptmcad.cover.rectangles import Cover
 from ptmcad.errors import ConfigError
 from ptmcad.exact.boundaries.polyline import WallPolyline, chains, critical_shares
 from ptmcad.exact.cad.projection import lines_of
@@ -57,7 +56,7 @@ def boundaries(result: RegionMap, tolerance: Any = TOLERANCE) -> tuple[Boundary,
         )
     with within_doubles(result.slice):
         if result.cover is not None:
-            return tuple(_outlines(result, result.cover))
+            return tuple(_outlines(result))
         return tuple(_drawn(result, piece) for piece in _pieces(result, wanted))
 
 
@@ -185,11 +184,11 @@ def _upper(value: Fraction) -> float:
     return near if Fraction(near) >= value else nextafter(near, inf)
 
 
-def _outlines(result: RegionMap, cover: Cover) -> Iterator[Boundary]:
+def _outlines(result: RegionMap) -> Iterator[Boundary]:
     """The outlines of a certified map's cells."""
-    complement, cells = component_cells(result, cover)
+    complement, cells = component_cells(result)
     numbers = [n for n in cells if n is not None]
-    scale = [(a.width / cover.steps, a.low) for a in result.slice.axes]
+    scale = [(a.width / complement.cover.steps, a.low) for a in result.slice.axes]
     for number, polygons in zip(numbers, outlines(complement, numbers), strict=True):
         region = result.cells[cells[number]].region
         for corners in polygons:

@@ -19,12 +19,11 @@ from ptmcad.answer.arrangement import correspondence
 from ptmcad.answer.changes import TOLERANCE, Change, Changes
 from ptmcad.ask.changewords import described
 from ptmcad.ask.classification import check_count
-from ptmcad.ask.engines import is_certified
 from ptmcad.ask.members import AskedFamily, Common, in_common, in_space
 from ptmcad.errors import ConfigError, HypothesisError, LimitReached
 from ptmcad.exact.familyprojection import critical_values, surfaces_of
 from ptmcad.exact.slicearrangement import Picture, picture_of
-from ptmcad.options import DEFAULTS, Options, Progress
+from ptmcad.options import DEFAULTS, Options, Progress, is_certified
 from ptmcad.question.config import Family, family_from
 from ptmcad.question.shipped import RecordSource
 from ptmcad.text.enclosure import AlgebraicNumber, Enclosure

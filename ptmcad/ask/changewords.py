@@ -6,6 +6,7 @@ other and the counts agree. Near enough to the change they are; no decision rest
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterator
 
 from ptmcad.answer.arrangement import SIDES
@@ -47,16 +48,15 @@ def _shared(one: Picture, other: Picture) -> Iterator[tuple[int, int]]:
 
 
 def _births(before: Picture, after: Picture, groups: list[_Same]) -> Iterator[str]:
-    appear: dict[tuple[int, ...], int] = {}
-    vanish: dict[tuple[int, ...], int] = {}
+    appear, vanish = (Counter[tuple[int, ...]]() for _ in range(2))
     for old, new in groups:
         many, others = len(old), len(new)
         key = before.arrangement.keys[old[0]] if many else after.arrangement.keys[new[0]]
         of = _of(before, key)
         if not many:
-            appear[key] = appear.get(key, 0) + 1
+            appear[key] += 1
         elif not others:
-            vanish[key] = vanish.get(key, 0) + 1
+            vanish[key] += 1
         elif many == 1 and others > 1:
             yield f"{_article(before, key)} region of {of} splits into {others}"
         elif others == 1 and many > 1:
@@ -76,14 +76,10 @@ def _sides(before: Picture, after: Picture, kept: dict[int, int]) -> Iterator[st
     for a, b in kept.items():
         key = before.arrangement.keys[a]
         name = f"{_article(before, key)} region of {_of(before, key)}"
-        changes = list(
-            zip(SIDES, before.arrangement.touched(a), after.arrangement.touched(b), strict=True)
-        )
-        for side, earlier, later in changes:
-            if not earlier and later:
-                yield f"{name} reaches {_side(before, side)}"
-            elif earlier and not later:
-                yield f"{name} leaves {_side(before, side)}"
+        touched = (before.arrangement.touched(a), after.arrangement.touched(b))
+        for side, earlier, later in zip(SIDES, *touched, strict=True):
+            if bool(earlier) != bool(later):
+                yield f"{name} {'leaves' if earlier else 'reaches'} {_side(before, side)}"
 
 
 def _contacts(before: Picture, after: Picture, kept: dict[int, int]) -> Iterator[str]:

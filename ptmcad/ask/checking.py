@@ -18,7 +18,6 @@ from flint import fmpq
 from ptmcad.algebra.bases import plan_text
 from ptmcad.algebra.fibre_algebra import WorkLimit
 from ptmcad.ask.classification import check_flat_loops, check_taken, flat_loops
-from ptmcad.ask.engines import is_certified
 from ptmcad.ask.forecast import (
     QUICK,
     Forecast,
@@ -38,6 +37,7 @@ from ptmcad.exact.stages import SliceProblem, problem_of, prove_regular
 from ptmcad.exact.witness import SHARES, points
 from ptmcad.model import ptm
 from ptmcad.model.closed import terms_of
+from ptmcad.options import is_certified
 from ptmcad.question.domain import proved
 from ptmcad.question.slice import Slice, merged
 from ptmcad.text.flint_numbers import from_fraction
@@ -172,15 +172,10 @@ def _is_large(slice: Slice) -> bool:
 
 
 def _check_certified(slice: Slice) -> None:
-    """Refuse what the certified engine refuses before it searches."""
-    check_taken(slice)
-    _check_bounded(slice)
-
-
-def _check_bounded(slice: Slice) -> None:
-    """Refuse free lengths where no bounds of lengths that are unknown are known, as the certified
-    engine does.
+    """Refuse what the certified engine refuses before it searches: also free lengths where no
+    bounds of unknown lengths are known.
     """
+    check_taken(slice)
     if slice.model == ptm() or not slice.model.reals:
         return
     from ptmcad.certified.plain.problem import problem_of as problem_in_intervals

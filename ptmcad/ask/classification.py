@@ -19,11 +19,10 @@ from typing import TYPE_CHECKING
 
 from ptmcad.answer.regionmap import RegionMap, Status
 from ptmcad.answer.timings import with_compilation
-from ptmcad.ask.engines import is_certified
 from ptmcad.errors import ConfigError, LimitReached, expect, quoted
 from ptmcad.model import ptm
 from ptmcad.model.description import looped
-from ptmcad.options import Options, Progress
+from ptmcad.options import Options, Progress, is_certified
 from ptmcad.process.memory import loading
 from ptmcad.question.config import slice_from
 from ptmcad.question.counts import Count
@@ -296,15 +295,14 @@ def check_resumable(slice: Slice, earlier: RegionMap) -> None:
             key="resume",
         )
     other = earlier.slice
+    parts = {"mechanism": "model", "axes": "axes", "count": "count"}
     different = [
-        *(["mechanism"] if other.model != slice.model else []),
-        *(["axes"] if other.axes != slice.axes else []),
-        *(["count"] if other.count is not slice.count else []),
-        *(
-            n
-            for n in dict.fromkeys((*slice.parameters, *other.parameters))
-            if slice.parameters.get(n) != other.parameters.get(n)
-        ),
+        name for name, part in parts.items() if getattr(other, part) != getattr(slice, part)
+    ]
+    different += [
+        n
+        for n in dict.fromkeys((*slice.parameters, *other.parameters))
+        if slice.parameters.get(n) != other.parameters.get(n)
     ]
     if different:
         raise ConfigError(

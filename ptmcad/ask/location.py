@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from fractions import Fraction
+from functools import wraps
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from flint import fmpq
@@ -66,7 +67,7 @@ def locate(result: RegionMap, point: Any = None, /, **at: Any) -> Location:
         )
         return Location(Status.ON_EDGE if on_edge else Status.OUTSIDE)
     if result.cover is not None:
-        return _locate_outside_cover(result, result.cover, place)
+        return _locate_outside_cover(result, place)
     if not result.cells:
         return Location(Status.UNDECIDED)
     base = result.base
@@ -168,33 +169,34 @@ in turn.
 Made = TypeVar("Made")
 
 
-def _kept(
-    latest: list[tuple[RegionMap, Made]], result: RegionMap, make: Callable[[], Made]
-) -> Made:
-    """What was made for this very map, or is made now; the latest ones are kept, by identity: to
-    compare whole maps would take longer."""
-    for k, (known, made) in enumerate(latest):
-        if known is result:
-            latest.append(latest.pop(k))
-            return made
-    made = make()
-    latest[:] = [*latest[1 - _KEPT :], (result, made)]
-    return made
+def _kept(make: Callable[[RegionMap], Made]) -> Callable[[RegionMap], Made]:
+    """A function of a map that keeps the latest answers, by identity: to compare whole maps would
+    take longer.
+    """
+    latest: list[tuple[RegionMap, Made]] = []
+
+    @wraps(make)
+    def known(result: RegionMap) -> Made:
+        for k, (other, made) in enumerate(latest):
+            if other is result:
+                latest.append(latest.pop(k))
+                return made
+        made = make(result)
+        latest[:] = [*latest[1 - _KEPT :], (result, made)]
+        return made
+
+    return known
 
 
+@_kept
 def _curves(result: RegionMap) -> list[FibredCurve]:
     """The curves over the map's base."""
-    return _kept(_latest_curves, result, lambda: curves_of(result.components, result.base))
+    return curves_of(result.components, result.base)
 
 
-_latest_curves: list[tuple[RegionMap, list[FibredCurve]]] = []
-
-
-def _locate_outside_cover(
-    result: RegionMap, cover: Cover, point: tuple[Fraction, Fraction]
-) -> Location:
-    complement, cells = component_cells(result, cover)
-    number = cells.get(complement.locate(*in_steps(result, cover, point)))
+def _locate_outside_cover(result: RegionMap, point: Sequence[Fraction]) -> Location:
+    complement, cells = component_cells(result)
+    number = cells.get(complement.locate(*_in_steps(result, complement.cover, point)))
     if number is None:
         return Location(Status.UNDECIDED)
     cell = result.cells[number]
@@ -203,34 +205,29 @@ def _locate_outside_cover(
     )
 
 
-def in_steps(
-    result: RegionMap, cover: Cover, point: tuple[Fraction, Fraction]
+def _in_steps(
+    result: RegionMap, cover: Cover, point: Sequence[Fraction]
 ) -> tuple[Fraction, Fraction]:
     """Lattice coordinates."""
     u, v = (a.share(x) * cover.steps for a, x in zip(result.slice.axes, point, strict=True))
     return u, v
 
 
-def component_cells(result: RegionMap, cover: Cover) -> tuple[Components, dict[int | None, int]]:
-    """The components outside the cover, and which cell each of them is.
+@_kept
+def component_cells(result: RegionMap) -> tuple[Components, dict[int | None, int]]:
+    """The components outside a certified map's cover, and which cell each of them is.
 
     Raises
     ------
     ConfigError
         When a cell's sample is in no component of its own.
     """
-    return _kept(_latest_components, result, lambda: _component_cells(result, cover))
-
-
-_latest_components: list[tuple[RegionMap, tuple[Components, dict[int | None, int]]]] = []
-
-
-def _component_cells(result: RegionMap, cover: Cover) -> tuple[Components, dict[int | None, int]]:
-    complement = components(cover)
+    assert result.cover is not None
+    complement = components(result.cover)
     cells: dict[int | None, int] = {}
     for number, cell in enumerate(result.cells):
         try:
-            place = complement.locate(*in_steps(result, cover, (cell.sample[0], cell.sample[1])))
+            place = complement.locate(*_in_steps(result, complement.cover, tuple(cell.sample)))
         except ValueError as error:
             raise contradiction(f"the sample of cell {number} is not in the window") from error
         if place is None or place in cells:

@@ -14,10 +14,9 @@ from typing import TYPE_CHECKING, NamedTuple
 from ptmcad.answer.family import FamilyMap, SpaceTerms
 from ptmcad.answer.regionmap import RegionMap
 from ptmcad.ask.classification import region_map
-from ptmcad.ask.engines import is_certified
 from ptmcad.errors import ConfigError, DegenerateSliceError, ExpressionError, InfiniteSolutionsError
 from ptmcad.model import Model
-from ptmcad.options import DEFAULTS, Options
+from ptmcad.options import DEFAULTS, Options, is_certified
 from ptmcad.question.config import Family, member_like
 from ptmcad.question.slice import Axes, Axis, Slice
 from ptmcad.text.numerals import text_of

@@ -6,17 +6,18 @@ from signs of its polynomial at centres; a certified map's pixels from its cover
 
 from __future__ import annotations
 
+from bisect import bisect_left
+from collections.abc import Iterable
 from fractions import Fraction
 
 import numpy as np
 from flint import fmpq
 from numpy.typing import NDArray
 
-from ptmcad.algebra.real_roots import RealRoot, sign_at
+from ptmcad.algebra.real_roots import RealRoot, order, sign_at
 from ptmcad.answer.boundaries import NONE, Grid
 from ptmcad.answer.regionmap import RegionMap
 from ptmcad.ask.location import component_cells, locate, stack_over
-from ptmcad.cover.rectangles import Cover
 from ptmcad.cover.subdivision import FREE
 from ptmcad.errors import ConfigError
 from ptmcad.exact.cad.projection import by_component, curves_of, lines_of
@@ -57,11 +58,7 @@ def grid(result: RegionMap, columns: int = 200, rows: int | None = None) -> Grid
         [a.middle(k, int(n)) for k in range(int(n))]
         for a, n in zip(result.slice.axes, (columns, down), strict=True)
     ]
-    cells = (
-        _exact(result, centres)
-        if result.cover is None
-        else _certified(result, result.cover, centres)
-    )
+    cells = (_exact if result.cover is None else _certified)(result, centres)
     with within_doubles(result.slice):
         x, y = (np.array([float(v) for v in values]) for values in centres)
     return Grid(
@@ -69,13 +66,15 @@ def grid(result: RegionMap, columns: int = 200, rows: int | None = None) -> Grid
         y,
         result.slice.axis_names,
         cells,
-        *(_of(result, cells, name) for name in ("region", "stable", "total")),
+        *(
+            at_pixels([getattr(cell, name) for cell in result.cells], cells)
+            for name in ("region", "stable", "total")
+        ),
     )
 
 
-def _of(result: RegionMap, cells: Labels, name: str) -> Labels:
-    """What the cells say, at their pixels."""
-    known = [getattr(cell, name) for cell in result.cells]
+def at_pixels(known: Iterable[int | None], cells: Labels) -> Labels:
+    """What is known of each cell, at pixels by the numbers of their cells; `NONE` for nothing."""
     table = np.array([*(NONE if v is None else v for v in known), NONE], dtype=np.int64)
     return table[cells]  # the label `NONE` is the last entry
 
@@ -111,35 +110,18 @@ def _exact(result: RegionMap, centres: list[list[Fraction]]) -> Labels:
 
 def _below(root: RealRoot, heights: list[fmpq]) -> tuple[int, bool]:
     """How many of the increasing heights lie below a root, and whether the next one is the root."""
-    low, high = 0, len(heights)
-    at_low = 0 if root.is_rational else sign_at(root.polynomial, root.low)
-    while low < high:
-        middle = (low + high) // 2
-        at = heights[middle]
-        if at <= root.low:
-            order = 0 if root.is_rational and at == root.low else -1
-        elif at >= root.high:
-            order = 1
-        else:
-            sign = sign_at(root.polynomial, at)
-            order = 0 if sign == 0 else -1 if sign == at_low else 1
-        if order == 0:
-            return middle, True
-        if order < 0:
-            low = middle + 1
-        else:
-            high = middle
-    return low, False
+    below = bisect_left(heights, 0, key=lambda height: order(height, root))
+    return below, below < len(heights) and order(heights[below], root) == 0
 
 
-def _certified(result: RegionMap, cover: Cover, centres: list[list[Fraction]]) -> Labels:
-    complement, cells = component_cells(result, cover)
+def _certified(result: RegionMap, centres: list[list[Fraction]]) -> Labels:
+    complement, cells = component_cells(result)
     number_of = np.full(len(complement.areas) + 1, NONE, dtype=np.int64)
     for component, cell in cells.items():
         if component is not None:
             number_of[component] = cell
     places = [
-        [axis.share(v) * cover.steps for v in values]
+        [axis.share(v) * complement.cover.steps for v in values]
         for axis, values in zip(result.slice.axes, centres, strict=True)
     ]
     tree = complement.subdivision

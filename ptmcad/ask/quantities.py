@@ -70,24 +70,23 @@ class Quantity:
     number: int = 0
 
 
-def quantity(model: Model, text: str, key: str = OPTION) -> Quantity:
+def quantity(model: Model, text: str) -> Quantity:
     """The quantity of a pose of this name: one of `quantities`, or an angle as ``angle:th1``.
 
     Raises
     ------
     ConfigError
-        That lists what the model has; its key is the option that the name was given to.
+        That lists what the model has.
     """
-    found = named(model, text, key)
-    if found is None:
-        found = unknown(model, text.strip())
+    found = named(model, text, OPTION) or unknown(model, text.strip())
     if found is None:
         known = quantities(model)
         hint = did_you_mean(text.strip(), known, "; there are " if known else "")
-        raise ConfigError(f"{text[:60]!r} is no quantity of {model.name}{hint}", key=key)
+        raise ConfigError(f"{text[:60]!r} is no quantity of {model.name}{hint}", key=OPTION)
     if found.kind is QuantityKind.BARRIER:
         raise ConfigError(
-            "a barrier is no number of a pose alone: `ptmcad map --value barrier` has it", key=key
+            "a barrier is no number of a pose alone: `ptmcad map --value barrier` has it",
+            key=OPTION,
         )
     return found
 

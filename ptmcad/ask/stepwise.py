@@ -14,7 +14,7 @@ from time import monotonic
 from ptmcad.algebra.bases import MISSING
 from ptmcad.answer.counts import Counts
 from ptmcad.answer.slicevariety import SliceVariety
-from ptmcad.ask.manyangles import counts_by_search, work_by_msolve, work_for
+from ptmcad.ask.solving import counts_by_search, work_by_msolve, work_for
 from ptmcad.errors import A_MODEL, ConfigError, LimitReached, expect, shown
 from ptmcad.exact.counting import equilibria
 from ptmcad.exact.eliminationsystem import slice_variety

@@ -13,9 +13,17 @@ import click
 
 from ptmcad.answer.motion import Fall, Motion
 from ptmcad.answer.words import assignments
-from ptmcad.cli.commonoptions import Formats, format_option, gathered, name_option, out_option
+from ptmcad.cli.commonoptions import (
+    Formats,
+    ResourceLimits,
+    format_option,
+    gathered,
+    held,
+    limit_options,
+    name_option,
+    out_option,
+)
 from ptmcad.cli.drawing import picture, report_written, style_of
-from ptmcad.cli.limits import ResourceLimits, held, limit_options
 from ptmcad.cli.progress import ProgressBar
 from ptmcad.cli.slices import question_of, slice_options
 from ptmcad.cli.storedresults import made_map, stored_in, stored_map, tolerance_option

@@ -8,10 +8,9 @@ from pathlib import Path
 
 import click
 
-from ptmcad.cli.commonoptions import PATH, out_option, reading
+from ptmcad.cli.commonoptions import PATH, out_option, reading, seconds_of
 from ptmcad.cli.completion import files
 from ptmcad.cli.drawing import report_written
-from ptmcad.cli.limits import seconds_of
 from ptmcad.cli.progress import ProgressBar
 from ptmcad.errors import ConfigError
 from ptmcad.extras import require

@@ -6,8 +6,13 @@ from pathlib import Path
 
 import click
 
-from ptmcad.cli.commonoptions import record_argument
-from ptmcad.cli.limits import ResourceLimits, clock_stopped, held, limit_options
+from ptmcad.cli.commonoptions import (
+    ResourceLimits,
+    clock_stopped,
+    held,
+    limit_options,
+    record_argument,
+)
 from ptmcad.cli.progress import ProgressBar
 from ptmcad.errors import MAX_FAULTS, ConfigError, Faults, HypothesisError
 from ptmcad.question.config import Family, with_place
@@ -77,7 +82,7 @@ def command(*, record: Path, limits: ResourceLimits) -> int:
                 f"{'design':<12}{designed.maximise}{of} over {over}; above is the record without it"
             )
         if sweeping is not None:
-            from ptmcad.workbench.sweeps.estimate import sweep_text
+            from ptmcad.workbench.sweeps.run import sweep_text
 
             for line in sweep_text(sweeping, found):
                 click.echo(line)

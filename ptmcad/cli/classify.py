@@ -13,12 +13,15 @@ import click
 from ptmcad.answer.plan import own_steps
 from ptmcad.answer.timings import with_compilation
 from ptmcad.answer.words import several
-from ptmcad.ask.engines import is_certified
 from ptmcad.cli.commonoptions import (
     Idle,
+    ResourceLimits,
+    clock_stopped,
     file_option,
     gathered,
+    held,
     idle_drawing,
+    limit_options,
     out_option,
     reading,
     report_idle,
@@ -34,7 +37,6 @@ from ptmcad.cli.drawing import (
     share_of,
     write_result,
 )
-from ptmcad.cli.limits import ResourceLimits, clock_stopped, held, limit_options
 from ptmcad.cli.progress import ProgressBar
 from ptmcad.cli.slices import (
     Third,
@@ -46,7 +48,7 @@ from ptmcad.cli.slices import (
 )
 from ptmcad.errors import ConfigError, LimitReached, blamed
 from ptmcad.model import ptm
-from ptmcad.options import Options
+from ptmcad.options import Options, is_certified
 from ptmcad.process.handover import Topic, send, watched
 from ptmcad.process.output import check_writable, how_to_go_on, save_stopped
 from ptmcad.question.config import Family
@@ -118,7 +120,7 @@ def classify_to_files(slice: Slice, options: Options, output: Output, spent: flo
                 raise
             # first: if this process is ended now, the other one has it
             text = _hand_over(stopped.partial, slice.name, output)
-            beside = names_of(slice.name, output.among((*PICTURES, *DATA)))
+            beside = names_of(slice.name, output.drawn)
             place, why = save_stopped(output.out / f"{slice.name}.json", text, beside=beside)
             where = f"partial map{_open_share(stopped.partial)} saved to {place}{why}"
             further = "" if getattr(stopped.partial, "cover", None) is None else how_to_go_on(place)
@@ -145,7 +147,7 @@ def _hand_over(result: Any, name: str, output: Output) -> str:
         state = "partial" if result.status.value == "partial" else "complete"
         place, beside = (
             str(output.out / f"{name}.json"),
-            names_of(name, output.among((*PICTURES, *DATA))),
+            names_of(name, output.drawn),
         )
         send(Topic.RESULT, state, text, _open_share(result), place, *beside)
     return text
@@ -163,7 +165,7 @@ def _save(result: Any, name: str, output: Output) -> None:
     text = _hand_over(result, name, output) if file else ""
     write_result(
         output.out,
-        output.drawing.writers(result, name, output.among((*PICTURES, *DATA))),
+        output.drawing.writers(result, name, output.drawn),
         file,
         text,
     )

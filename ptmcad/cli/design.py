@@ -10,9 +10,13 @@ import click
 
 from ptmcad.cli.commonoptions import (
     Formats,
+    ResourceLimits,
+    clock_stopped,
     format_option,
     gathered,
+    held,
     idle_output,
+    limit_options,
     name_option,
     out_option,
     record_argument,
@@ -20,7 +24,6 @@ from ptmcad.cli.commonoptions import (
 )
 from ptmcad.cli.completion import names, settings
 from ptmcad.cli.drawing import report_written, share_of, write_answer
-from ptmcad.cli.limits import ResourceLimits, clock_stopped, held, limit_options
 from ptmcad.cli.progress import ProgressBar
 from ptmcad.cli.slices import question_in
 from ptmcad.process.output import check_writable

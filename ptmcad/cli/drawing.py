@@ -67,12 +67,10 @@ def _reason(error: Exception) -> str:
         return f"--{error.key.replace('_', '-')}: {error.message}"
     if isinstance(error, PtmcadError):
         return str(error)
-    said = (error.strerror if isinstance(error, OSError) else None) or str(error)
-    return (
-        said
-        if isinstance(error, OSError)
-        else f"drawing failed unexpectedly{f': {said}' if said else ''}"
-    )
+    said = str(error)
+    if isinstance(error, OSError):
+        return error.strerror or said
+    return f"drawing failed unexpectedly{said and f': {said}'}"
 
 
 def write_result(
@@ -216,6 +214,11 @@ class Output(NamedTuple):
     def among(self, known: Formats) -> Formats:
         """The formats that are of some kind."""
         return tuple(kind for kind in self.formats if kind in known)
+
+    @property
+    def drawn(self) -> Formats:
+        """The formats of pictures and tables of one map."""
+        return self.among((*PICTURES, *DATA))
 
     def text(self, result: Any) -> str:
         """The result's JSON."""

@@ -10,8 +10,7 @@ from tempfile import TemporaryDirectory
 
 import click
 
-from ptmcad.cli.commonoptions import out_option
-from ptmcad.cli.limits import ResourceLimits, held, limit_options
+from ptmcad.cli.commonoptions import ResourceLimits, held, limit_options, out_option
 from ptmcad.cli.slices import slice_options
 from ptmcad.extras import require
 from ptmcad.process.handover import Topic, send

@@ -56,7 +56,14 @@ def family_to_files(
         from ptmcad.workbench.familymaps import prepared, together
 
         progress("variety of the family", 0, 1)
-        ends = None if options.timeout is None else time.monotonic() + options.timeout
+        begun = time.monotonic()
+
+        def left() -> Options:
+            """The options with the time that is left."""
+            if options.timeout is None:
+                return options
+            return replace(options, timeout=max(begun + options.timeout - time.monotonic(), 0.01))
+
         drawn = bool(wanted.among(MESHES)) or (third.surface and bool(wanted.among(PICTURES)))
         common, changes = prepared(
             family,
@@ -67,9 +74,8 @@ def family_to_files(
         values = common.family.values
         for number, value in enumerate(values):
             progress("members", number, len(values))
-            left = None if ends is None else max(ends - time.monotonic(), 0.01)
             try:
-                found = member_map(common, value, replace(options, timeout=left))
+                found = member_map(common, value, left())
             except LimitReached as stop:
                 written = f"; the maps of {number} of {len(values)} members are in {shown_path(wanted.out)}"
                 raise LimitReached(
@@ -83,10 +89,7 @@ def family_to_files(
         if drawn and changes is not None:
             from ptmcad.workbench.boundarymesh import surface_of
 
-            left = None if ends is None else max(ends - time.monotonic(), 0.01)
-            surface = surface_of(
-                common, changes, options=replace(options, timeout=left, progress=progress)
-            )
+            surface = surface_of(common, changes, options=replace(left(), progress=progress))
     result = together(family, common, tuple(members), changes)
     if writers := _writers(result, surface, wanted, third.surface):
         write_files(wanted.out, writers)

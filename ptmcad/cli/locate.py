@@ -12,9 +12,8 @@ import click
 from ptmcad.answer.location import Location
 from ptmcad.answer.regionmap import RegionMap
 from ptmcad.answer.words import index_words
-from ptmcad.cli.commonoptions import PATH, result_argument
+from ptmcad.cli.commonoptions import PATH, ResourceLimits, held, limit_options, result_argument
 from ptmcad.cli.completion import point as propose_point
-from ptmcad.cli.limits import ResourceLimits, held, limit_options
 from ptmcad.cli.storedresults import read_result
 from ptmcad.errors import ConfigError, shown
 from ptmcad.process.streams import reader_left

@@ -14,10 +14,18 @@ import click
 
 from ptmcad.answer.boundaries import NONE
 from ptmcad.answer.field import Field
-from ptmcad.cli.commonoptions import Formats, format_option, idle_style, out_option, report_idle
+from ptmcad.cli.commonoptions import (
+    Formats,
+    ResourceLimits,
+    format_option,
+    held,
+    idle_style,
+    limit_options,
+    out_option,
+    report_idle,
+)
 from ptmcad.cli.completion import poses, quantity_names
 from ptmcad.cli.drawing import figure, picture, pixels_of, style_options
-from ptmcad.cli.limits import ResourceLimits, held, limit_options
 from ptmcad.cli.progress import ProgressBar
 from ptmcad.cli.slices import question_of, slice_options
 from ptmcad.cli.storedresults import made_map, stored_in, stored_map, tolerance_option

@@ -8,8 +8,7 @@ from pathlib import Path
 
 import click
 
-from ptmcad.cli.commonoptions import PATH
-from ptmcad.cli.limits import ResourceLimits, held, limit_options, report_deadline
+from ptmcad.cli.commonoptions import PATH, ResourceLimits, held, limit_options, report_deadline
 from ptmcad.cli.progress import ProgressBar
 from ptmcad.errors import shown_path
 from ptmcad.process.output import check_writable

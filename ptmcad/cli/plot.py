@@ -19,9 +19,12 @@ from ptmcad.cli.commonoptions import (
     PATH,
     Formats,
     Idle,
+    ResourceLimits,
     file_option,
     gathered,
+    held,
     idle_drawing,
+    limit_options,
     report_idle,
     result_argument,
 )
@@ -35,17 +38,18 @@ from ptmcad.cli.drawing import (
     names_of,
 )
 from ptmcad.cli.familyfiles import mesh_writers, picture_writers, read_family_file
-from ptmcad.cli.limits import ResourceLimits, held, limit_options
 from ptmcad.cli.locate import point_of, rows_of
 from ptmcad.cli.progress import ProgressBar
 from ptmcad.cli.storedresults import kind_of, read_result, stored_in
 from ptmcad.errors import ConfigError, blamed, shown, shown_path
 from ptmcad.process.output import Writer, check_writable, write_files
-from ptmcad.question.config import point_from_mapping, portable_file
+from ptmcad.question.config import portable_file
 from ptmcad.question.counts import Shades
+from ptmcad.question.slice import Point
 from ptmcad.show import render
 from ptmcad.show.style import LegendPlace
 from ptmcad.show.table import count_text, index_text
+from ptmcad.text.expressions import values_at
 from ptmcad.text.numerals import equalities, shortest_text
 from ptmcad.text.parsing import number_for
 
@@ -88,13 +92,7 @@ def poses_at(result: RegionMap, at: Place) -> Poses:
     from ptmcad.ask.solving import poses_at as solved
 
     slice = result.slice
-    # a parameter that stands for several others is beside them in a slice
-    aliased = {parameter.alias_of for parameter in slice.model.parameters.values()}
-    alone = [name for name in slice.parameters if name not in aliased]
-    values = {name: slice.parameters[name].evaluate(*at) for name in alone}
-    return replace(
-        solved(slice.model, point_from_mapping(values, slice.model), DIGITS), units=slice.units
-    )
+    return replace(solved(slice.model, values_at(slice.parameters, *at), DIGITS), units=slice.units)
 
 
 def measured(result: RegionMap, path: Path) -> tuple[tuple[Measured, ...], int]:
@@ -165,7 +163,7 @@ def _agreement(result: RegionMap, at: Place, count: str) -> Agreement:
     """Whether the map has this count there; untold where it, or the file, has none."""
     from ptmcad.show.render.painting import Agreement
 
-    location = result.locate(**dict(zip(result.slice.axis_names, at, strict=True)))
+    location = result.locate(Point(result.slice.axis_names, *at))
     if (
         not count
         or location.region is None

@@ -14,9 +14,13 @@ from click.core import ParameterSource
 
 from ptmcad.cli.commonoptions import (
     Formats,
+    ResourceLimits,
+    compile_certified,
     format_option,
     gathered,
+    held,
     idle_output,
+    limit_options,
     name_option,
     out_option,
     record_argument,
@@ -24,7 +28,6 @@ from ptmcad.cli.commonoptions import (
 )
 from ptmcad.cli.completion import names, pair_of_names, point, quantity_names
 from ptmcad.cli.drawing import report_written, write_answer
-from ptmcad.cli.limits import ResourceLimits, compile_certified, held, limit_options
 from ptmcad.cli.locate import point_of
 from ptmcad.cli.progress import ProgressBar
 from ptmcad.cli.range_answers import RangeRequest, answer, is_enclosed, request_codec

@@ -104,7 +104,7 @@ def _answers(
         found = intervals(slice, along, at, digits=digits)
         yield found, linetable.table(found, digits), "", partial(_drawn, "draw_range", slice, found)
     if request.over:
-        from ptmcad.ask.lines.rangerows import operation_widths
+        from ptmcad.ask.lines.along import operation_widths
 
         with ProgressBar() as progress:
             found = operation_widths(slice, along, request.rows, digits, progress)
@@ -130,7 +130,7 @@ def _answers(
         from ptmcad.ask.lines.diagram import branch_diagram
 
         with ProgressBar() as progress:
-            found = branch_diagram(slice, along, at, request.quantities, progress, line())
+            found = branch_diagram(slice, line(), request.quantities, progress)
         text = pathtable.branch_table(found)
         yield found, text, "-branches", partial(_drawn, "draw_branches", slice, found)
 
@@ -161,5 +161,5 @@ def _paths_and_branches(slice: Slice, found: Any, line: Callable[[], SolutionsOn
     model = found.model
     if len(model.unknowns) > MAX_UNKNOWNS or not model.criterion.is_told:
         return render.draw_paths(slice, found)
-    diagram = branch_diagram(slice, found.along.name, found.at, model.sorted_unknowns, found=line())
+    diagram = branch_diagram(slice, line(), model.sorted_unknowns)
     return render.draw_paths_and_branches(slice, found, diagram)

@@ -6,8 +6,14 @@ from pathlib import Path
 
 import click
 
-from ptmcad.cli.commonoptions import PATH, reading, result_argument
-from ptmcad.cli.limits import ResourceLimits, held, limit_options
+from ptmcad.cli.commonoptions import (
+    PATH,
+    ResourceLimits,
+    held,
+    limit_options,
+    reading,
+    result_argument,
+)
 from ptmcad.cli.progress import ProgressBar
 from ptmcad.cli.storedresults import read_result
 from ptmcad.errors import ConfigError, shown_path

@@ -12,8 +12,13 @@ from ptmcad.answer.poses import MAX_DIGITS, Poses
 from ptmcad.answer.regionmap import Status
 from ptmcad.cli.commonoptions import (
     Formats,
+    ResourceLimits,
+    clock_stopped,
+    compile_certified,
     format_option,
+    held,
     idle_output,
+    limit_options,
     name_option,
     out_option,
     record_argument,
@@ -21,7 +26,6 @@ from ptmcad.cli.commonoptions import (
 )
 from ptmcad.cli.completion import point
 from ptmcad.cli.drawing import report_written, write_answer
-from ptmcad.cli.limits import ResourceLimits, clock_stopped, compile_certified, held, limit_options
 from ptmcad.cli.locate import point_of
 from ptmcad.cli.progress import ProgressBar
 from ptmcad.cli.slices import set_option

@@ -16,9 +16,8 @@ import click
 
 from ptmcad.answer.consistency import check_numbers
 from ptmcad.answer.regionmap import RegionMap
-from ptmcad.cli.commonoptions import report_idle
+from ptmcad.cli.commonoptions import clock_stopped, report_idle
 from ptmcad.cli.drawing import share_of
-from ptmcad.cli.limits import clock_stopped
 from ptmcad.errors import ConfigError, PictureError, PtmcadError, blamed, shown
 from ptmcad.options import Options
 from ptmcad.question.config.typed import Typed

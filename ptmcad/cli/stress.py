@@ -10,9 +10,16 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from ptmcad.cli.commonoptions import Formats, format_option, out_option
+from ptmcad.cli.commonoptions import (
+    Formats,
+    ResourceLimits,
+    compile_certified,
+    format_option,
+    held,
+    limit_options,
+    out_option,
+)
 from ptmcad.cli.drawing import figure, report_written, write_result
-from ptmcad.cli.limits import ResourceLimits, compile_certified, held, limit_options
 from ptmcad.cli.progress import ProgressBar
 from ptmcad.errors import ConfigError, LimitReached
 from ptmcad.process.output import Writer, check_writable, text_writer

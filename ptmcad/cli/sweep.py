@@ -12,10 +12,18 @@ import click
 
 from ptmcad.answer.regionmap import RegionMap
 from ptmcad.answer.sweep import State, Sweep
-from ptmcad.cli.commonoptions import PATH, Formats, format_option, gathered, record_argument
+from ptmcad.cli.commonoptions import (
+    PATH,
+    Formats,
+    ResourceLimits,
+    format_option,
+    gathered,
+    held,
+    limit_options,
+    record_argument,
+)
 from ptmcad.cli.completion import names
 from ptmcad.cli.drawing import picture, report_written, share_of
-from ptmcad.cli.limits import ResourceLimits, held, limit_options
 from ptmcad.cli.progress import ProgressBar
 from ptmcad.cli.slices import engine_option, question_in
 from ptmcad.errors import ConfigError, shown_path

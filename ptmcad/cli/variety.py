@@ -6,8 +6,7 @@ from pathlib import Path
 
 import click
 
-from ptmcad.cli.commonoptions import PATH
-from ptmcad.cli.limits import ResourceLimits, held, limit_options
+from ptmcad.cli.commonoptions import PATH, ResourceLimits, held, limit_options
 from ptmcad.cli.progress import ProgressBar
 from ptmcad.cli.slices import slice_options
 from ptmcad.errors import shown_path

@@ -22,9 +22,14 @@ from ptmcad.answer.family import FamilyMap
 from ptmcad.answer.poses import Poses
 from ptmcad.answer.regionmap import RegionMap, Status
 from ptmcad.answer.sweep import Bounds, Member, Summary
-from ptmcad.cli.commonoptions import report_idle, result_argument
+from ptmcad.cli.commonoptions import (
+    ResourceLimits,
+    held,
+    limit_options,
+    report_idle,
+    result_argument,
+)
 from ptmcad.cli.familyfiles import read_family_file
-from ptmcad.cli.limits import ResourceLimits, held, limit_options
 from ptmcad.cli.progress import ProgressBar
 from ptmcad.cli.storedresults import MAX_BYTES, is_record, kind_of, read_other, read_result
 from ptmcad.errors import ConfigError, LimitReached
@@ -274,7 +279,7 @@ def _verified_design(
     from ptmcad.question.config.designkey import design_from
     from ptmcad.show.document.designdocument import extremes_codec
     from ptmcad.verification import VerifyReport, check_anew, verify_design
-    from ptmcad.workbench.designs.proof import exact_maximum
+    from ptmcad.workbench.designs.designbounds import exact_maximum
 
     report = verify_design(found, seed, progress)
     if not report.ok or not found.maxima:
@@ -299,8 +304,7 @@ def _versions_in(path: Path) -> Any:
 
 def _verified_poses(stored: Poses, versions: Any, progress: Progress) -> VerifyReport:
     """The poses at a point, and all that is said of each."""
-    from ptmcad.ask.manyangles import FEW
-    from ptmcad.ask.solving import poses_at
+    from ptmcad.ask.solving import FEW, poses_at
     from ptmcad.verification import VerifyReport, check_anew, verify_poses
     from ptmcad.verification.poseclaims import RIGHTLY, in_same_order
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import click
 
-from ptmcad.cli.limits import ResourceLimits, held
+from ptmcad.cli.commonoptions import ResourceLimits, held
 from ptmcad.cli.progress import ProgressBar
 
 

@@ -128,31 +128,35 @@ Slab = tuple[Fraction, Fraction]
 """From one value to another."""
 
 
+_Placed = tuple[float, Fraction]
+"""A member of an interval without changes: its place, from 0 to 1, and its value. Values are the
+denser the nearer they are to the interval's ends.
+"""
+
+
 class _Gap(NamedTuple):
     """Between two members of an interval without changes.
 
     Attributes
     ----------
     slab : that interval.
-    places : of the three members in it, from 0 to 1; values are the denser the nearer they are to
-        its ends.
-    low, middle, high : the values.
+    members : the lower one, one between them, and the upper one.
     deviation : of the middle member from the sheet between the other two, infinite where there is
         none.
     """
 
     slab: Slab
-    places: tuple[float, float, float]
-    low: Fraction
-    middle: Fraction
-    high: Fraction
+    members: tuple[_Placed, _Placed, _Placed]
     deviation: float
 
     @property
-    def halves(self) -> tuple[tuple[float, Fraction, float, Fraction], ...]:
-        """Both, each by its ends' places and values."""
-        a, b, c = self.places
-        return ((a, self.low, b, self.middle), (b, self.middle, c, self.high))
+    def values(self) -> list[Fraction]:
+        """Of the three members."""
+        return [value for _, value in self.members]
+
+    @property
+    def width(self) -> Fraction:
+        return self.members[-1][1] - self.members[0][1]
 
 
 _Entry = tuple[float, Fraction, _Gap]
@@ -197,7 +201,7 @@ class _SurfaceSearch:
                 (0.5, _value(slab, 0.5, slab))
             ]
             for start, end in pairwise([(0.0, slab[0]), *stated, (1.0, slab[1])]):
-                self._push(heap, slab, (*start, *end))
+                self._push(heap, slab, start, end)
         while heap:
             gap = heappop(heap)[2]
             self.members.report("members of the surface", len(self._known), self.max_members)
@@ -206,8 +210,8 @@ class _SurfaceSearch:
             elif self._is_last(gap):
                 self._close(gap)
             else:
-                for half in gap.halves:
-                    self._push(heap, gap.slab, half)
+                for half in pairwise(gap.members):
+                    self._push(heap, gap.slab, *half)
 
     def runs(self) -> list[Joined]:
         """Members in increasing order that sheets join each to the next."""
@@ -222,10 +226,10 @@ class _SurfaceSearch:
         # where boundaries have the same shape, they come nearer and nearer, but for a jump at which
         # their strips do
         narrowest = NARROWEST if gap.deviation == inf else NARROWEST / 16
-        return gap.high - gap.low <= narrowest * self.width or len(self._known) >= self.max_members
+        return gap.width <= narrowest * self.width or len(self._known) >= self.max_members
 
     def _join(self, gap: _Gap) -> None:
-        self.joined |= {(gap.low, gap.middle), (gap.middle, gap.high)}
+        self.joined |= {*pairwise(gap.values)}
         self.deviation = max(self.deviation, gap.deviation)
 
     def _close(self, gap: _Gap) -> None:
@@ -234,25 +238,23 @@ class _SurfaceSearch:
             self._join(gap)
             return
         if gap.deviation < inf:
-            self.unresolved += gap.high - gap.low > NARROWEST * self.width
+            self.unresolved += gap.width > NARROWEST * self.width
             return
-        for _, low, _, high in gap.halves:
+        for low, high in pairwise(gap.values):
             first, second = self._boundary(low), self._boundary(high)
             if first is not None and second is not None and first.shape == second.shape:
                 self.joined.add((low, high))
             elif high - low > NARROWEST * self.width:
                 self.unresolved += 1
 
-    def _push(
-        self, heap: list[_Entry], slab: Slab, ends: tuple[float, Fraction, float, Fraction]
-    ) -> None:
-        """Enter the gap between two members, each by its place and value."""
-        start, low, end, high = ends
+    def _push(self, heap: list[_Entry], slab: Slab, first: _Placed, last: _Placed) -> None:
+        """Enter the gap between two members."""
+        (start, low), (end, high) = first, last
         middle = (start + end) / 2
         value = _value(slab, middle, (low, high))
         deviation = self._deviation(low, value, high)
         share = float((high - low) / self.width)
-        gap = _Gap(slab, (start, middle, end), low, value, high, deviation)
+        gap = _Gap(slab, (first, (middle, value), last), deviation)
         heappush(heap, (-min(deviation, share), low, gap))
 
     def _boundary(self, value: Fraction) -> BoundaryStrips | None:

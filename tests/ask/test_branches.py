@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from fractions import Fraction
 from pathlib import Path
 from typing import Any
@@ -13,11 +13,12 @@ import pytest
 
 import ptmcad
 from ptmcad.answer.branches import Branch, Branches
-from ptmcad.ask.lines.diagram import branch_diagram
+from ptmcad.ask.lines.diagram import SolutionsOnLine, branch_diagram
 from ptmcad.ask.quantities import OPTION, of_pose, quantities, quantity
 from ptmcad.cli import run
 from ptmcad.errors import ConfigError
 from ptmcad.question.config import load
+from ptmcad.question.line import line_of
 from ptmcad.question.slice import Slice
 from ptmcad.show.ranges.pathtable import kind
 from ptmcad.workbench.fields import fieldvalues as fields
@@ -33,10 +34,15 @@ def numbers(branch: Branch, k: int) -> list[float]:
     return [float(number) for number in found if number is not None]
 
 
+def diagram(slice: Slice, along: str, at: dict[str, Any], names: Sequence[str]) -> Branches:
+    line = line_of(slice, along, at, free=True)
+    return branch_diagram(slice, SolutionsOnLine(line), names)
+
+
 @pytest.fixture(scope="module")
 def fig4() -> Branches:
     names = ("th1", "energy", "stiffness", "force:A1A4", "length:A1A4", "y:A3")
-    return branch_diagram(load(FIG4), "rho", {"L2": "3/2"}, names)
+    return diagram(load(FIG4), "rho", {"L2": "3/2"}, names)
 
 
 @pytest.mark.slow
@@ -71,9 +77,7 @@ def test_branches_are_smooth_and_meet_at_the_folds(fig4: Branches) -> None:
 
 def test_the_cubic() -> None:
     """x^3 - a x + 1/2 has one solution, or three where 4 a^3 > 27/4."""
-    found = branch_diagram(
-        load(CONFIGS / "systems" / "cubic.yaml"), "a", {"b": Fraction(1, 2)}, ["x"]
-    )
+    found = diagram(load(CONFIGS / "systems" / "cubic.yaml"), "a", {"b": Fraction(1, 2)}, ["x"])
     fold = (27 / 16) ** (1 / 3)
     assert [len(found.branches), sum(float(b.points[-1].value) < fold for b in found.branches)] == [
         4,

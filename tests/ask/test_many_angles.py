@@ -10,7 +10,7 @@ import pytest
 
 import ptmcad
 from ptmcad.answer.regionmap import Status
-from ptmcad.ask import manyangles
+from ptmcad.ask import solving
 from ptmcad.errors import ConfigError, LimitReached
 from ptmcad.model import Model
 
@@ -64,7 +64,7 @@ def test_a_chain_of_four_bars_is_counted() -> None:
 def test_algebra_and_search_agree(monkeypatch: pytest.MonkeyPatch) -> None:
     exact = ptmcad.counts_at(pendulums(), F="-3/2")
     assert exact.index == (1, 4, 6, 4, 1)
-    monkeypatch.setattr(manyangles, "_MAX_WORK", (1, 1, 1, 1))
+    monkeypatch.setattr(solving, "_MAX_WORK", (1, 1, 1, 1))
     assert ptmcad.counts_at(pendulums(), F="-3/2") == exact
     assert ptmcad.solve(model=pendulums(), F="-3/2").status is Status.CERTIFIED
 
@@ -77,7 +77,7 @@ def test_a_potential_of_four_angles_is_counted_in_the_same_way(
         unknowns=unknowns, potential="cos(p) + b*cos(q) + sin(r) - 2*cos(s) + cos(p - q)/5"
     )
     exact = ptmcad.counts_at(system, b=2)
-    monkeypatch.setattr(manyangles, "_MAX_WORK", (1, 1, 1, 1))
+    monkeypatch.setattr(solving, "_MAX_WORK", (1, 1, 1, 1))
     assert ptmcad.counts_at(system, b=2) == exact
     assert exact.total == 16
 

@@ -20,8 +20,13 @@ from support.programs import needs_msolve
 from ptmcad.algebra import msolve
 from ptmcad.ask.lines.along import certified_intervals
 from ptmcad.question.config import slice_from_options
-from ptmcad.studies.paper.critical import UNKNOWNS, critical_free_lengths, critical_system
-from ptmcad.studies.paper.squaring import Design, signed_solutions
+from ptmcad.studies.paper.critical import (
+    UNKNOWNS,
+    Design,
+    critical_free_lengths,
+    critical_system,
+    signed_solutions,
+)
 
 DESIGN: Design = ("7/10", "1", "3/2", "1/5", "-1/10", "-1/10")
 

@@ -16,7 +16,7 @@ import ptmcad
 from ptmcad.algebra.polynomials import PLANE
 from ptmcad.algebra.real_roots import isolate
 from ptmcad.answer.widths import Maximum, Place
-from ptmcad.ask.lines.rangerows import operation_widths
+from ptmcad.ask.lines.along import operation_widths
 from ptmcad.exact.cad.projection import curve
 from ptmcad.exact.cad.stacks import BaseEnd
 from ptmcad.exact.ranges.exactline import intervals

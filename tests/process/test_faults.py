@@ -31,7 +31,7 @@ from support.warm import Started, start
 
 import ptmcad
 from ptmcad.cli import run
-from ptmcad.cli.limits import bound_of, default_bound
+from ptmcad.cli.commonoptions import bound_of, default_bound
 from ptmcad.errors import ConfigError
 from ptmcad.process.handover import Own, Topic, received, send
 from ptmcad.process.output import check_writable, save_stopped, text_writer, write_files

@@ -11,7 +11,7 @@ import pytest
 
 import ptmcad
 from ptmcad.answer.poses import Poses
-from ptmcad.ask.lines.rangerows import operation_widths
+from ptmcad.ask.lines.along import operation_widths
 from ptmcad.ask.solving import poses_at
 from ptmcad.exact.ranges.exactline import intervals
 from ptmcad.question.config import point_from_mapping

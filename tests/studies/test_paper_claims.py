@@ -30,8 +30,8 @@ from support.paper_energy import Bent, alike, bent
 from ptmcad.answer.regionmap import Merge, Status
 from ptmcad.studies.paper import free, maps, statements
 from ptmcad.studies.paper.claim import TEXTS, Claim, Verdict, judge, texts
+from ptmcad.studies.paper.critical import squared
 from ptmcad.studies.paper.maps import FIGURES, region_map
-from ptmcad.studies.paper.squaring import squared
 from ptmcad.studies.paper.statements import expression, holds
 from ptmcad.text.enclosure import Enclosure
 from ptmcad.text.flint_numbers import to_fraction

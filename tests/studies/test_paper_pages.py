@@ -14,13 +14,14 @@ from typing import Any
 import pytest
 import sympy as sp
 
-from ptmcad.studies.paper import corrected as equations
 from ptmcad.studies.paper.claim import Claim, Verdict, texts
 from ptmcad.studies.paper.pages import (
     FILES,
     claims_html,
     claims_json,
     claims_markdown,
+    equations,
+    equations_latex,
     figure_html,
     index_html,
     table,
@@ -82,7 +83,7 @@ def test_pages_escape_what_they_show() -> None:
 def test_index_is_self_contained_and_names_what_is_not_confirmed() -> None:
     result: Any = SimpleNamespace(slice=SimpleNamespace(heading="A title"), table=lambda: "table")
     figure = figure_html("fig2", result, {"fig2.png": b"\x89PNG1", "fig2-poses.png": b"\x89PNG2"})
-    page = index_html(made_up(), [figure], equations.equations()[:2])
+    page = index_html(made_up(), [figure], equations()[:2])
     links = Links(page)
     assert "script" not in links.tags and "link" not in links.tags
     for reference in links.references:
@@ -108,7 +109,7 @@ def test_summary_counts_and_shows_what_is_not_confirmed() -> None:
 
 def test_equations_are_the_right_ones() -> None:
     """The page's (5), (6), (12), (13) read back as SymPy, against the corrected text."""
-    by_number = {e["number"]: e for e in equations.equations()}
+    by_number = {e["number"]: e for e in equations()}
     names = {n: sp.Symbol(n, positive=True) for n in ("L1", "L2", "rho", "k")}
     names |= {n: sp.Symbol(n, real=True) for n in ("F3", "F4", "t1", "t2")}
     names |= {"f3": names["F3"] / names["k"], "f4": names["F4"] / names["k"]}
@@ -143,10 +144,8 @@ def test_equations_are_the_right_ones() -> None:
 
 
 def test_latex_is_balanced() -> None:
-    text = equations.as_latex()
-    assert (
-        text.count(r"\begin{dmath*}") == text.count(r"\end{dmath*}") == len(equations.equations())
-    )
+    text = equations_latex()
+    assert text.count(r"\begin{dmath*}") == text.count(r"\end{dmath*}") == len(equations())
     for left, right in (("{", "}"), (r"\left(", r"\right)")):
         assert text.count(left) == text.count(right)
 

@@ -21,7 +21,7 @@ from support.free_length_equilibria import free_length_equilibria
 from support.programs import needs_msolve, real_solutions
 
 from ptmcad.studies.paper import free
-from ptmcad.studies.paper.squaring import signed_solutions
+from ptmcad.studies.paper.critical import signed_solutions
 
 Numbers = tuple[str, str, str, str, str, str]
 """rho, L1, L2, l0, f3, f4."""

@@ -13,8 +13,7 @@ from support.maps import shipped
 import ptmcad
 from ptmcad.answer.motion import Motion
 from ptmcad.ask.fields import track
-from ptmcad.ask.fields.course import corners_of
-from ptmcad.ask.fields.track import Track
+from ptmcad.ask.fields.track import Track, corners_of
 from ptmcad.errors import ConfigError, PtmcadError
 from ptmcad.workbench.fields import posemotion as module
 from ptmcad.workbench.fields.posemotion import motion_of

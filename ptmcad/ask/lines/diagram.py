@@ -10,10 +10,9 @@ tried in between. The joins are no claim.
 from __future__ import annotations
 
 import itertools
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from fractions import Fraction
 from math import cos, pi
-from typing import Any
 
 from ptmcad.answer.branches import Branch, Branches, BranchPoint
 from ptmcad.answer.poses import Pose
@@ -22,7 +21,7 @@ from ptmcad.ask.lines.along import intervals
 from ptmcad.ask.quantities import Quantity, of_pose, quantity, unit_of
 from ptmcad.ask.solving import poses_at
 from ptmcad.options import Progress
-from ptmcad.question.line import Line, line_of
+from ptmcad.question.line import Line
 from ptmcad.question.slice import Slice
 
 SAMPLES = 24
@@ -42,20 +41,17 @@ _Sample = tuple[Fraction, tuple[Pose, ...]]
 
 def branch_diagram(
     slice: Slice,
-    along: str,
-    at: Mapping[str, Any],
+    found: SolutionsOnLine,
     names: Sequence[str],
     progress: Progress | None = None,
-    found: SolutionsOnLine | None = None,
 ) -> Branches:
     """All branches of solutions on a line of a slice, with some quantities at each of their points.
 
     Parameters
     ----------
-    along, at : as for `ptmcad.intervals`.
+    found : the solutions on the line, some of which may be known from other questions.
     names : as `ptmcad.ask.quantities.quantity` takes them.
     progress : called as progress("branches: interval", done, total).
-    found : the solutions on the same line, where other questions were asked of it before.
 
     Raises
     ------
@@ -63,9 +59,9 @@ def branch_diagram(
         For a name that the model does not have, and as the intervals do.
     """
     asked = [quantity(slice.model, name) for name in names]
-    found = found or SolutionsOnLine(line_of(slice, along, at, free=True))
+    line = found.line
     branches: list[Branch] = []
-    stretches = intervals(slice, along, at, digits=DIGITS).stretches
+    stretches = intervals(slice, line.along.name, line.at, digits=DIGITS).stretches
     for number, (low, high) in enumerate(stretches):
         if progress is not None:
             progress("branches: interval", number, len(stretches))
@@ -73,8 +69,8 @@ def branch_diagram(
     return Branches(
         slice.name,
         slice.model,
-        found.line.along,
-        found.line.at,
+        line.along,
+        line.at,
         tuple(q.name for q in asked),
         tuple(unit_of(q, slice) for q in asked),
         tuple(branches),

@@ -174,9 +174,12 @@ def _path(
             key="--path",
         )
     origin = Reached(start, box, box)
-    below = [c for c in reversed(critical) if _order(c.at, start) < 0]
-    left = _one_way(family, below, origin, -1)
-    right = _one_way(family, [c for c in critical if _order(c.at, start) > 0], origin, 1)
+    left, right = (
+        _one_way(
+            family, [c for c in critical[::side] if _order(c.at, start) * side > 0], origin, side
+        )
+        for side in (-1, 1)
+    )
     reached = [*reversed(left[0]), origin, *right[0]]
     sides = [family.sides(r.over.low, r.over.high, r.over.hull()) for r in reached]
     return PosePath.of(
@@ -304,10 +307,10 @@ def _condition(family: LineSystem, reached: Reached) -> Fate | None:
         (Fate.EXCLUDED, family.formulas.inequalities),
         (Fate.UNSTABLE, family.formulas.stability),
     )
-    for fate, formula in ((fate, f) for fate, some in conditions for f in some):
-        (value,) = family.values_at([formula], reached)
-        if not value > 0:
-            return fate if value < 0 else Fate.UNDECIDED
+    for fate, formulas in conditions:
+        for value in family.values_at(formulas, reached):
+            if not value > 0:
+                return fate if value < 0 else Fate.UNDECIDED
     return None
 
 

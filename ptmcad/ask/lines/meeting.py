@@ -294,12 +294,7 @@ def _symmetries(
         found = _reflections(family, group, places, after)
         model = family.line.model
         kinds = model.unknowns
-        ordered = [
-            k
-            for name in (*model.angles, *model.reals)
-            for k, known in enumerate(kinds)
-            if name == known
-        ]
+        ordered = [list(kinds).index(name) for name in model.sorted_unknowns]
         for change in involutions(model, family.line.parameters):
             coordinates = change.coordinates(tuple(kinds.values()))
             images = _images(

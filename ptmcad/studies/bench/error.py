@@ -242,9 +242,9 @@ def cover_error(truth: Truth, result: RegionMap, count: str) -> Figures | None:
     counts = [shown_count(cell.stable, cell.total, count) for cell in result.cells]
     if None in counts:
         return None
-    complement, cells = component_cells(result, result.cover)
+    complement, cells = component_cells(result)
     tree = complement.subdivision
-    rectangles = tree.bounds / result.cover.steps
+    rectangles = tree.bounds / complement.cover.steps
     if truth.base:
         rectangles = rectangles[:, [2, 3, 0, 1]]
     free = tree.state == FREE

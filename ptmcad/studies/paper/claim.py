@@ -97,14 +97,13 @@ def judge(name: str, text: Text) -> Claim:
     witness = "".join(_sentences(text, "witness", facts)) if shown or "shown" not in text else ""
     if reason := text.get("reason"):
         return claim(verdict=Verdict.NOT_CHECKED, reason=reason, evidence=evidence if shown else ())
+    computed = partial(claim, evidence=evidence, facts=facts)
     if printed:
-        return claim(verdict=Verdict.CONFIRMED, evidence=evidence, facts=facts)
+        return computed(verdict=Verdict.CONFIRMED)
     if shown and right:
-        return claim(
-            verdict=Verdict.CORRECTED, right=right, witness=witness, evidence=evidence, facts=facts
-        )
+        return computed(verdict=Verdict.CORRECTED, right=right, witness=witness)
     if witness:
-        return claim(verdict=Verdict.REFUTED, witness=witness, evidence=evidence, facts=facts)
+        return computed(verdict=Verdict.REFUTED, witness=witness)
     return claim(
         verdict=Verdict.UNDECIDED,
         reason="neither the printed statement nor a corrected one was shown to hold",

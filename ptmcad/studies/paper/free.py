@@ -18,8 +18,7 @@ from ptmcad.ask.classification import classify
 from ptmcad.ask.location import locate
 from ptmcad.studies.paper import statements
 from ptmcad.studies.paper.claim import Facts
-from ptmcad.studies.paper.critical import critical_free_lengths
-from ptmcad.studies.paper.squaring import Design, signed_solutions, squared
+from ptmcad.studies.paper.critical import Design, critical_free_lengths, signed_solutions, squared
 from ptmcad.text.parsing import rational
 
 ELIMINATED: Design = ("7/10", "1", "3/2", "1/5", "-1/10", "-1/10")

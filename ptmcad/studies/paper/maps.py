@@ -25,7 +25,7 @@ from ptmcad.answer.intervals import CountIntervals, OperationSpan, lower, upper
 from ptmcad.answer.regionmap import Component, Merge, RegionMap, Solution, Status
 from ptmcad.answer.widths import OperationWidths
 from ptmcad.ask.classification import classify
-from ptmcad.ask.lines.rangerows import operation_widths
+from ptmcad.ask.lines.along import operation_widths
 from ptmcad.exact.ranges.exactline import intervals
 from ptmcad.question.config import load
 from ptmcad.question.counts import Count

@@ -24,6 +24,7 @@ from flint import ctx
 from ptmcad.answer.intervals import CountIntervals, lower, upper
 from ptmcad.answer.poses import Pose, Poses
 from ptmcad.answer.regionmap import RegionMap, Status
+from ptmcad.question.slice import Point
 from ptmcad.studies.byhand import scale
 from ptmcad.studies.stress.case import Case, free_lengths
 from ptmcad.studies.stress.doubleprecision import (
@@ -172,11 +173,11 @@ def _map(case: Case, found: RegionMap) -> tuple[Checks, Row]:
     ]
     if tolerance is None:
         checks += [_confirmed(parameters, r.sample, r.stable) for r in found.regions]
-    places = [
-        dict(zip(found.slice.axis_names, at, strict=True))
-        for at in product(_middles(a, b), _middles(c, d))
+    places = product(_middles(a, b), _middles(c, d))
+    pairs = [
+        (_double(parameters, at), found.locate(Point(found.slice.axis_names, *at)).stable)
+        for at in places
     ]
-    pairs = [(_double(parameters, tuple(at.values())), found.locate(**at).stable) for at in places]
     decided = [count == truth for count, truth in pairs if truth is not None]
     seen = sorted({count for count, truth in pairs if truth is not None})
     return checks, {

@@ -22,10 +22,17 @@ from ptmcad.question.config.designkey import design_from
 from ptmcad.question.shipped import RecordSource
 from ptmcad.text.flint_numbers import simplest_fraction
 from ptmcad.text.parsing import share_for
-from ptmcad.workbench.designs.designbounds import Lengths, bounded, bounder_of
+from ptmcad.workbench.designs.designbounds import (
+    Lengths,
+    Proof,
+    bounded,
+    bounder_of,
+    exact_maximum,
+    most_on_lines,
+    place_of,
+)
 from ptmcad.workbench.designs.evaluation import Evaluate, Value, evaluator
 from ptmcad.workbench.designs.optimiser import Point, best_of, within
-from ptmcad.workbench.designs.proof import Proof, exact_maximum, most_on_lines, place_of
 
 TOLERANCE = Fraction(1, 100)
 BOXES = 100_000
@@ -226,8 +233,7 @@ class _DesignSearch:
         (axis,) = self.asked.over
         places = [place_of(m) for m in maxima]
         inside = [min(max(p, axis.low), axis.high) for p in places]
-        steps = evaluations
-        wanted = [*inside, *(axis.at(Fraction(k, steps)) for k in range(1, steps))]
+        wanted = [*inside, *(axis.at(Fraction(k, evaluations)) for k in range(1, evaluations))]
         nearby = axis.width / 2**30
         for place in inside:  # where a place is itself none to count at, next to it
             wanted += [p for p in (place - nearby, place + nearby) if axis.holds(p)]
@@ -247,7 +253,7 @@ class _DesignSearch:
         """What was found and proved, as data."""
         asked = self.asked
         best, value = self.best if self.best is not None else (None, None)
-        low = Fraction(0) if value is None else value.value.low
+        low = self._improved(None)
         if proof.boxes and proof.bound is not None and proof.bound < low:
             raise ArithmeticError(
                 f"a design has {float(low)}, more than the bound {float(proof.bound)} of all"

@@ -1,10 +1,11 @@
-"""Bounds over boxes of designs, and branch and bound by them: what no design exceeds, and how near the
-best known one comes to it.
+"""What no design exceeds, by exact critical values over one parameter, or by branch and bound over
+boxes of designs; and how near the best known one comes to it.
 
-Guarantee: the bounds of the boxes are upper bounds for all designs in them off a set without
-interior, for those that satisfy the conditions, whatever the order in which they were cut. For
-areas the window is cut into strips; over a strip and an interval of designs `designlines` bounds the
-length of what may have the wanted count on any line of the strip, and so what it adds to the area.
+Guarantee: over one parameter that of `exact.ranges.width`. The bounds of the boxes are upper bounds
+for all designs in them off a set without interior, for those that satisfy the conditions, whatever
+the order in which they were cut. For areas the window is cut into strips; over a strip and an
+interval of designs `designlines` bounds the length of what may have the wanted count on any line of
+the strip, and so what it adds to the area.
 """
 
 from __future__ import annotations
@@ -19,6 +20,8 @@ from flint import fmpq
 
 from ptmcad.algebra.real_roots import Interval
 from ptmcad.answer.design import BoundedBox
+from ptmcad.answer.intervals import lower, upper
+from ptmcad.answer.widths import Maximum
 from ptmcad.ask.members import in_space
 from ptmcad.errors import (
     DegenerateSliceError,
@@ -26,9 +29,12 @@ from ptmcad.errors import (
     HypothesisError,
     InfiniteSolutionsError,
 )
+from ptmcad.exact.ranges.anyline import lines_of
+from ptmcad.exact.ranges.rangestrips import strips
+from ptmcad.exact.ranges.width import widest
 from ptmcad.exact.stages import problem_of
 from ptmcad.question.config.designed import Aim, Design
-from ptmcad.text.flint_numbers import from_fraction, interval_of, to_fraction
+from ptmcad.text.flint_numbers import from_fraction, interval_of, simplest_fraction, to_fraction
 from ptmcad.workbench.designs.designlines import (
     Run,
     Space,
@@ -39,7 +45,61 @@ from ptmcad.workbench.designs.designlines import (
     space_of_family,
     space_of_slice,
 )
-from ptmcad.workbench.designs.proof import Proof
+
+
+class Proof(NamedTuple):
+    """What no design exceeds.
+
+    Attributes
+    ----------
+    bound : None where there is none, for the reason given.
+    """
+
+    bound: Fraction | None
+    reason: str
+    boxes: tuple[BoundedBox, ...] = ()
+    maxima: tuple[Maximum, ...] = ()
+
+
+def exact_maximum(design: Design) -> tuple[Maximum, ...] | None:
+    """The widest ranges over one parameter; None for another question.
+
+    Raises
+    ------
+    HypothesisError
+        When the slice is degenerate or leaves the domain of the geometry.
+    """
+    if design.aim is not Aim.RANGE or len(design.over) != 1 or design.conditions:
+        return None
+    slice = design.slice({})
+    return widest(slice, design.along, strips(slice, design.along, design.working))
+
+
+def most_on_lines(design: Design) -> Fraction:
+    """Of a range over one parameter what there is at most on lines in the variety, of which no
+    box's bound speaks.
+    """
+    if design.aim is not Aim.RANGE or len(design.over) != 1:
+        return Fraction(0)
+    slice, name = design.slice({}), design.over[0].name
+    lines = lines_of(slice, design.along, strips(slice, design.along, design.working))
+    held = (
+        line.most
+        for line in lines
+        if design.may_hold({name: (lower(line.value), upper(line.value))})
+    )
+    return max(held, default=Fraction(0))
+
+
+def place_of(maximum: Maximum) -> Fraction:
+    """A simple rational number where the widest range is, or next to it."""
+    low, high = maximum.at.low, maximum.at.high
+    if low == high:
+        return low
+    # of an interval the part before the first value at which the width is not attained
+    inside = [upper(v) for v in (*maximum.exceptions, *maximum.doubtful) if low < lower(v)]
+    return simplest_fraction(low, min([high, *inside]))
+
 
 Place = tuple[Interval, ...]
 """A box of one or two design parameters."""

@@ -173,10 +173,9 @@ def _refined(space: Space, box: Box, run: Run, resolution: fmpq) -> Iterator[Run
         else:
             parts.append(part)
     parts = _joined(parts)
-    if run.left is not None and parts[0].signs == run.left:
-        parts[0] = parts[0]._replace(here=False)
-    if run.right is not None and parts[-1].signs == run.right:
-        parts[-1] = parts[-1]._replace(here=False)
+    for end, beyond in ((0, run.left), (-1, run.right)):
+        if beyond is not None and parts[end].signs == beyond:
+            parts[end] = parts[end]._replace(here=False)
     parts = [
         _counted(space, box, part) if part.signs is not None and part.here is None else part
         for part in parts

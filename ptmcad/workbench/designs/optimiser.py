@@ -11,6 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from fractions import Fraction
+from functools import partial
 from itertools import combinations, product
 from typing import Any
 
@@ -51,18 +52,16 @@ def best_of(evaluate: Evaluate, number: int, seed: int, evaluations: int) -> Non
                 best[:] = [(value, point)]
         return seen[point]
 
-    try:
-        _evolve(look, number, seed, evaluations)
-    except LimitReached:
-        if left[0] > 0:
-            raise  # the caller's
-    left[0] = evaluations - len(seen)
-    if best:
+    for search in (
+        partial(_evolve, look, number, seed, evaluations),
+        partial(_climb, look, best),
+    ):
         try:
-            _climb(look, best[0])
+            search()
         except LimitReached:
             if left[0] > 0:
-                raise
+                raise  # the caller's
+        left[0] = evaluations - len(seen)
 
 
 def _evolve(look: Evaluate, number: int, seed: int, evaluations: int) -> None:
@@ -93,11 +92,13 @@ def _evolve(look: Evaluate, number: int, seed: int, evaluations: int) -> None:
 _NOTHING = 1e100
 
 
-def _climb(look: Evaluate, start: tuple[Fraction, Point]) -> None:
-    """Steps along each parameter and across two of them, as ridges run; longer after one that leads
+def _climb(look: Evaluate, best: Sequence[tuple[Fraction, Point]]) -> None:
+    """Steps from the best point along each parameter and across two of them, as ridges run; longer after one that leads
     higher.
     """
-    value, point = start
+    if not best:
+        return
+    value, point = best[0]
     ways = _ways(len(point))
     step = Fraction(1, 64)
     while step * FINEST >= 1:

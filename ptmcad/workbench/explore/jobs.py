@@ -22,13 +22,12 @@ from ptmcad.answer.poses import Pose, Poses
 from ptmcad.answer.regionmap import RegionMap, Status
 from ptmcad.answer.words import stable_of
 from ptmcad.ask.classification import region_map
-from ptmcad.ask.engines import is_certified
 from ptmcad.ask.members import Common, in_common, member_map
 from ptmcad.ask.solving import poses_at
 from ptmcad.errors import ConfigError, LimitReached, Place, PtmcadError
 from ptmcad.model import Model
 from ptmcad.model.work import loads_at
-from ptmcad.options import Options, Progress
+from ptmcad.options import Options, Progress, is_certified
 from ptmcad.process.output import Writer, check_writable, text_writer, write_files
 from ptmcad.question.config import file_name
 from ptmcad.question.config.familyquestion import family_of

@@ -24,15 +24,14 @@ import numpy as np
 from ptmcad.answer.boundaries import NONE
 from ptmcad.answer.motion import Fall, Motion, Place, Step
 from ptmcad.answer.regionmap import RegionMap, Status
-from ptmcad.ask.fields.course import corners_of
 from ptmcad.ask.fields.descent import descent
 from ptmcad.ask.fields.equations import Floats, apart, unknowns_of
-from ptmcad.ask.fields.track import MIN_STEP, Track, followed
+from ptmcad.ask.fields.track import MIN_STEP, Track, corners_of, followed
 from ptmcad.ask.location import locate
 from ptmcad.errors import ConfigError, PtmcadError, expect
 from ptmcad.options import Progress
 from ptmcad.question.shipped import FIRST, SECOND
-from ptmcad.question.slice import within_doubles
+from ptmcad.question.slice import Point, within_doubles
 from ptmcad.text.numerals import equalities
 from ptmcad.workbench.fields.pixelsolver import filled
 from ptmcad.workbench.fields.quantityfield import Choice, choice_of, complete, exact_at
@@ -109,7 +108,7 @@ are not known.
 
 def _cell(result: RegionMap, at: Place) -> int:
     """The number of the cell at a point; `NONE` on curves, and where the map leaves it open."""
-    cell = locate(result, dict(zip(result.slice.axis_names, at, strict=True))).cell
+    cell = locate(result, Point(result.slice.axis_names, *at)).cell
     return NONE if cell is None else cell
 
 
@@ -238,10 +237,8 @@ def _walked(
 
 
 def _where(walk: Track, share: float) -> str:
-    at = walk.place(share)
-    return ", ".join(
-        f"{n} = {float(v):.6g}" for n, v in zip(walk.slice.axis_names, at, strict=True)
-    )
+    at = map(float, walk.place(share))
+    return equalities(dict(zip(walk.slice.axis_names, at, strict=True)), "{:.6g}".format)
 
 
 def _taken(walk: Track, stop: _Stop, at: Floats) -> Step:

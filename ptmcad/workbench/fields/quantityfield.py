@@ -26,8 +26,7 @@ from ptmcad.question.slice import Slice
 from ptmcad.text.expressions import values_at
 from ptmcad.workbench.fields.barrier import barriers
 from ptmcad.workbench.fields.fieldvalues import OPTION, Valued, quantity_of
-from ptmcad.workbench.fields.jumps import jumps
-from ptmcad.workbench.fields.pixelsolver import PixelSolver, filled
+from ptmcad.workbench.fields.pixelsolver import PixelSolver, filled, jumps
 
 BATCH, LARGE_BATCH = 300, 20_000
 """Pixels at a time: what they take stays in the processor's cache; of descents few are long, which

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import threading
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 from fractions import Fraction
 from functools import partial
 from time import perf_counter
@@ -48,14 +48,9 @@ class Wanted:
     @property
     def options(self) -> Options:
         """The engine's options; a member has one thread, as there are many members."""
-        return Options(
-            engine=self.engine,
-            tolerance=self.tolerance,
-            area_tolerance=self.area_tolerance,
-            areas=self.areas,
-            timeout=self.timeout,
-            jobs=1,
-        )
+        named = {field.name: getattr(self, field.name) for field in fields(self)}
+        del named["along"]
+        return Options(jobs=1, **named)
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,10 +1,11 @@
 """A sweep from its record to its folder: what is to be computed is planned, computed in any order,
-and recorded; and small drawings of its maps, made from the stored results.
+and recorded; small drawings of its maps, made from the stored results; and what it will cost.
 
 Guarantee: when `sweep` returns, each member is done, refused, or has failed as often as it was to
 be tried. Stopped in any way it leaves a folder with which the same call goes on, computing no
 member again that is done. The index is the same whatever the order, the processes and the
-interruptions, seconds and attempts aside.
+interruptions, seconds and attempts aside. The cost is an estimate from the time that some members
+take, and no bound; nothing is said of sweeps whose members take long.
 """
 
 from __future__ import annotations
@@ -18,6 +19,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import partial
 from itertools import chain
 from pathlib import Path
+from random import Random
 from time import monotonic
 from typing import TYPE_CHECKING, Any
 
@@ -37,6 +39,7 @@ from ptmcad.workbench.sweeps.member import Outcome, Wanted, computing, reason
 from ptmcad.workbench.sweeps.pool import Cluster, Pool, answers_of
 
 if TYPE_CHECKING:
+    from ptmcad.ask.checking import CheckedSlice
     from ptmcad.show.report.atlas import Thumbnail
 
 RETRIES = 2
@@ -323,3 +326,57 @@ def sketches(
             yield number, drawn
     finally:
         pool.close()
+
+
+MAX_SOLUTIONS = 8
+"""Complex solutions of a member that is computed for its time: with more of them it may take
+minutes.
+"""
+MEMBERS = 4
+"""That are computed for their time, ..."""
+ENOUGH = 1.0
+"""... until they have taken so many seconds together."""
+
+
+def sweep_text(question: Sweeping, first: CheckedSlice) -> Iterator[str]:
+    """The number of members and the time that they take here, as lines of text."""
+    yield f"{'sweep':<12}{len(question)} members over {', '.join(question.names)}; above is the first member"
+    if (
+        first.engine != "exact"
+        or first.complex_solutions is None
+        or first.complex_solutions > MAX_SOLUTIONS
+    ):
+        yield f"{'time':<12}{len(question)} times that of a member, on {_these_processors()}: see cost"
+        return
+    from ptmcad.ask.forecast import duration
+
+    taken = _seconds(question)
+    whole = sum(taken) / len(taken) * len(question) / processors()
+    low, high = (f"{seconds:.2g}" for seconds in (min(taken), max(taken)))
+    each = (
+        f"a member took {high} s"
+        if len(taken) == 1
+        else f"{len(taken)} members took {low} to {high} s"
+    )
+    yield f"{'time':<12}about {duration(max(1.0, whole))} on {_these_processors()}: {each} with ranges"
+
+
+def _seconds(question: Sweeping) -> list[float]:
+    """What members here and there take; a sweep's middle, and its corners, are often slices that
+    are easier.
+    """
+    compute = computing(question, Wanted(along=axes_of(question)[0]))
+    taken: list[float] = []
+    for number in Random(0).sample(range(len(question)), min(MEMBERS, len(question))):
+        outcome = compute(number)
+        # it cannot have failed: there is neither another version nor a time limit
+        assert outcome.seconds is not None, outcome.error
+        taken.append(outcome.seconds)
+        if sum(taken) > ENOUGH:
+            break
+    return taken
+
+
+def _these_processors() -> str:
+    number = processors()
+    return "one processor" if number == 1 else f"{number} processors"
