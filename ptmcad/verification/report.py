@@ -248,13 +248,21 @@ def _is_decimal_of(text: str | None, ends: tuple[Fraction, Fraction]) -> bool:
     return all(abs(fraction_of(text) - end) <= unit for end in ends)
 
 
-PROVENANCE = Check(
-    "provenance",
-    "",
-    None,
-    "name, title, reference, versions, precision, timings: no claims about the regions",
+NO_CLAIMS = (
+    Check(
+        "plan",
+        "",
+        None,
+        "what it says of curves, unknowns and savings is no claim about the regions",
+    ),
+    Check(
+        "provenance",
+        "",
+        None,
+        "name, title, reference, versions, precision, timings: no claims about the regions",
+    ),
 )
-"""What no check is of."""
+"""The entries of a map that no check is of."""
 PARTS = 100
 """Of each check, for a bar that shows how far a verification is."""
 

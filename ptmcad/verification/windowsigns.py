@@ -34,9 +34,7 @@ from ptmcad.verification.rootcounts import (
 )
 
 HALVINGS = 4
-"""Times that the window's sides are halved before a curve may be used although it has no point in
-the window.
-"""
+"""Times that the window's sides are halved before a curve's discriminant is asked."""
 
 
 RUNS = "runs through the window"
@@ -47,6 +45,10 @@ def check_left_out(claims: Claims) -> str:
     result = claims.result
     number = 0
     for n, c in enumerate(result.components):
+        if c.kind is Kind.AUXILIARY:
+            raise Violation(
+                f"component {n} is auxiliary, but no saving was switched off that leaves it out"
+            )
         if not c.left_out or (c.left_out == HARMLESS and c.kind is Kind.INFINITY):
             continue
         if c.left_out != NO_POINT:
@@ -55,7 +57,7 @@ def check_left_out(claims: Claims) -> str:
             )
         number += 1
         curve = PlaneCurve.of(n, c.polynomial, result.base)
-        if plainly_outside(curve, claims):
+        if _plainly_outside(curve, claims):
             continue
         hit = point_in_window(curve, claims.base, claims.height)
         if hit is not None:
@@ -98,9 +100,8 @@ def point_in_window(
     return None
 
 
-def plainly_outside(curve: PlaneCurve, claims: Claims) -> bool:
-    """Whether few signs show that the curve has no point in the open window: those for which it has
-    to be left out.
+def _plainly_outside(curve: PlaneCurve, claims: Claims) -> bool:
+    """Whether few signs show that the curve has no point in the open window.
 
     A curve in one variable is decided by its roots; another one is asked for on the window and on
     what halving both sides up to `HALVINGS` times makes of it, with constant terms then.
