@@ -25,10 +25,9 @@ from ptmcad.verification.derivation import (
     derivation_at,
     derivation_of,
 )
-from ptmcad.verification.fibrealgebra import SolutionAlgebra, fibre_over
+from ptmcad.verification.fibrealgebra import NotFinite, SolutionAlgebra, fibre_over
 from ptmcad.verification.kinds import SignMeaning, kind_of, meaning_of
 from ptmcad.verification.planecurves import Terms
-from ptmcad.verification.quotientalgebra import NotFinite
 from ptmcad.verification.report import Violation
 from ptmcad.verification.rootcounts import (
     Interval,

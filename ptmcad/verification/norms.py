@@ -241,7 +241,7 @@ def _product_of_powers(
     for k in range(len(claims.result.components)):
         while (pair := _separating_points(k, norms)) is None:
             draw()
-        exponents.append(_exponent(claims, k, *pair, what))
+        exponents.append(_exponent(*pair))
     for _ in range(max(POINTS - len(norms), FRESH_POINTS)):
         draw()
     constants = [
@@ -275,28 +275,17 @@ def _separating_points(k: int, norms: Sequence[_Norm]) -> _Pair | None:
     return None
 
 
-def _exponent(claims: Claims, k: int, first: _Norm, second: _Norm, own: int, what: str) -> int:
-    """The exponent e of component k, if the norm is a constant times powers of the components.
+def _exponent(first: _Norm, second: _Norm, own: int) -> int:
+    """The exponent e of a component, if the norm is a constant times powers of the components.
 
     The norms' quotient at the two points is free of the constant, and its part with primes of
-    ``own`` is own^e: these primes divide no other value. Where it is no power of ``own``, the norm
-    is no such product.
-
-    Raises
-    ------
-    Violation
+    ``own`` is own^e: these primes divide no other value.
     """
     quotient = first[1] / second[1]
     for part, sign in ((quotient.numerator, 1), (quotient.denominator, -1)):
-        shared, e = abs(part) // _without(abs(part), own), 0
-        while shared % own == 0:
-            shared, e = shared // own, e + 1
-        if shared > 1:
-            raise Violation(
-                f"the norm of {what} at {_at(claims, first[0])} is no constant times powers of the stored "
-                f"components, as its prime factors show: component {k}, or another one, is wrong or "
-                "missing"
-            )
+        e = 0
+        while part % own ** (e + 1) == 0:
+            e += 1
         if e:
             return sign * e
     return 0

@@ -28,9 +28,9 @@ from ptmcad.text.plane import PlanePolynomial
 from ptmcad.text.syntax import names_in
 from ptmcad.verification.claims import Claims
 from ptmcad.verification.derivation import Derivation, derivation_at, derivation_of
+from ptmcad.verification.fibrealgebra import NotFinite, algebra
 from ptmcad.verification.norms import BITS, check_identity, condition_exponents, random_points
 from ptmcad.verification.planecurves import PLANE, factors, polynomial
-from ptmcad.verification.quotientalgebra import NotFinite, algebra
 from ptmcad.verification.report import Violation
 
 _LINE_POINTS = 2

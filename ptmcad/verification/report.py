@@ -39,6 +39,10 @@ class Violation(Exception):
     """A claim of the result is false; the message holds the claim and a witness."""
 
 
+class NotKnown(ArithmeticError):
+    """What decides a claim was not found out: the claim is not checked."""
+
+
 @dataclass(frozen=True, slots=True)
 class Check:
     """One kind of claim.
@@ -316,6 +320,8 @@ def checked(
                 passed = None if isinstance(detail, Unchecked) else True
             except Violation as violation:
                 ended, passed, detail = "not reached", False, shown(str(violation))
+            except NotKnown as reason:
+                detail = str(reason)
             except LimitReached as limit:
                 ended, detail = f"not reached: {limit}", f"not finished: {limit}"
         checks.append(Check(name, method, passed, detail))
