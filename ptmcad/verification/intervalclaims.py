@@ -22,14 +22,13 @@ from ptmcad.answer.intervals import End
 from ptmcad.question.counts import Count
 from ptmcad.question.slice import Slice
 from ptmcad.text.enclosure import AlgebraicNumber
-from ptmcad.text.flint_numbers import from_fraction
 from ptmcad.text.numerals import approximate_text, fraction_of, integer_of, shortest_text
 from ptmcad.verification.certified.counted import numbers_in
 from ptmcad.verification.certified.coverclaims import CertifiedClaims
 from ptmcad.verification.normalform.boxes import Unproved
 from ptmcad.verification.parameterlines import LineGap, ParameterLine
 from ptmcad.verification.report import Unchecked, Violation
-from ptmcad.verification.rootcounts import roots_within
+from ptmcad.verification.rootcounts import is_alone
 from ptmcad.verification.solutions import in_words, map_of
 
 Entry = Mapping[str, Any]
@@ -153,7 +152,7 @@ def _root(data: Entry) -> tuple[AlgebraicNumber, fmpz_poly]:
     number = AlgebraicNumber(tuple(map(int, polynomial)), *_enclosed_end(data))
     if sum(multiplicity for _, multiplicity in polynomial.factor()[1]) != 1:
         raise Violation(f"the polynomial of an end near {float(number):.10g} is not irreducible")
-    if roots_within(polynomial, from_fraction(number.low), from_fraction(number.high)) != 1:
+    if not is_alone(number):
         raise Violation(
             f"an end near {float(number):.10g} is not the only root of its polynomial there"
         )

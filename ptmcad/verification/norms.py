@@ -31,7 +31,7 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property, partial
-from itertools import permutations
+from itertools import islice, permutations
 from math import gcd, lcm, prod
 
 from flint import fmpq, fmpq_mat
@@ -293,26 +293,22 @@ def _exponent(first: _Norm, second: _Norm, own: int) -> int:
 
 def _check_poles(claims: Claims, points: Iterator[FibrePoint]) -> None:
     result = claims.result
-    far: list[FibrePoint] = []
-    while len(far) < FAR_POINTS:
-        far.append(next(points))
+    far = list(islice(points, FAR_POINTS))
     for k, c in enumerate(result.components):
-        asked = []
-        if c.kind is Kind.INFINITY:
-            asked.append((_has_poles, "at infinity, but solutions have no pole on it"))
-        if c.left_out == HARMLESS:
-            if claims.result.slice.model.reals:
-                raise Violation(
-                    f"component {k} is left out, but real solutions may leave every bounded set on it"
-                )
-            asked.append((_is_harmless, "harmless, but det H may vanish at solutions near it"))
-        for holds, message in asked:
-            while (
-                len(clear := [p for p in far if _far_part(k, p).bit_length() > CLEAR_BITS])
-                < FAR_POINTS
-            ):
+        harmless = c.left_out == HARMLESS
+        if harmless and result.slice.model.reals:
+            raise Violation(
+                f"component {k} is left out, but real solutions may leave every bounded set on it"
+            )
+        for is_said, holds, message in (
+            (c.kind is Kind.INFINITY, _has_poles, "at infinity, but solutions have no pole on it"),
+            (harmless, _is_harmless, "harmless, but det H may vanish at solutions near it"),
+        ):
+            clear = [p for p in far if _far_part(k, p).bit_length() > CLEAR_BITS]
+            while is_said and len(clear) < FAR_POINTS:
                 far.append(next(points))
-            if not any(holds(k, point) for point in clear):
+                clear += far[-1:] * (_far_part(k, far[-1]).bit_length() > CLEAR_BITS)
+            if is_said and not any(holds(k, point) for point in clear):
                 text = c.polynomial.text(result.slice.axis_names)[:60]
                 raise Violation(f"component {k} is said to be {message}: {text}")
     foreign = [_foreign_poles(point) for point in far]

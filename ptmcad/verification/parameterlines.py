@@ -43,6 +43,7 @@ from ptmcad.text.flint_numbers import from_fraction, simplest_fraction, to_fract
 from ptmcad.text.numerals import shortest_text
 from ptmcad.verification.derivation import not_positive
 from ptmcad.verification.fibrealgebra import NotFinite, fibre
+from ptmcad.verification.planecurves import coefficients
 from ptmcad.verification.report import NotKnown, Unchecked, Violation
 from ptmcad.verification.rootcounts import isolating_intervals, squarefree
 
@@ -232,8 +233,7 @@ def _read(value: fmpz, base: int) -> fmpz_poly:
 def _row(terms: Sequence[tuple[int, int, Fraction]]) -> fmpz_poly:
     """A multiple of a polynomial in the first axis."""
     scale = lcm(*(c.denominator for _, _, c in terms))
-    row = {i: int(c * scale) for i, _, c in terms}
-    return fmpz_poly([row.get(i, 0) for i in range(1 + max(row))])
+    return coefficients(tuple((i, 0, int(c * scale)) for i, _, c in terms))[0]
 
 
 ACROSS = 3
