@@ -275,7 +275,7 @@ OTHERS: list[tuple[Check, str, Change, str]] = [
         text={n: "3" if n == "k" else t.replace("k", "100") for n, t in {**r.slice.text, "k": "3"}.items()})(r),
      "the parameter k is stored, but nothing depends on it"),
     (check_text, "fig3", with_text("L1", "L9"), "the texts kept for L1 name what is not explained"),
-    (check_text, "fig3", with_text("L1", "1/0"), "the text kept for L1, '1/0', is no expression"),
+    (check_text, "fig3", with_text("L1", "1/0"), "the text kept for 'L1', '1/0', is no expression"),
     (check_text, "fig3", with_text("L1", "$"), "the text kept for 'L1', '.', is no expression"),
     (check_text, "fig3", with_text("L1", "2"), "L1 was written as '2', but is 1"),
     (check_system, "fig3", with_system(potential="a b"), "the stored potential cannot be read: "),
