@@ -20,13 +20,13 @@ An order of reading, for what an exact map claims:
 3. `polynomialtexts`, `equationtexts`, `parameterclaims`: the stored texts say the same.
    `certified.parameterdomain`: the signs of parameters, of exact maps and lines too, by
    `windowsigns`.
-4. `quotientalgebra`, `principalminors`, `fibrealgebra`: the solutions over a point, counted by
+4. `principalminors`, `fibrealgebra`: the solutions over a point, counted by
    signatures. `solutions`: the stored counts and boxes. `norms`: the stored curves are all of those
    where counts change.
 5. `planecurves`, `rootcounts`, `projections`, `adjacencies`, `merging`: the decomposition of the
-   plane. `planclaims` and, once more, `windowsigns`: what was left out.
+   plane. `windowsigns`, once more: the curves that were left out.
 6. `disks`, `wallintegrals`, `areaclaims`: enclosures of the areas, by power series alone.
-7. `poseclaims`: points. `parameterlines`, `intervalclaims`, `enclosedclaims`, `rangeclaims`: lines.
+7. `poseclaims`: points. `parameterlines`, `intervalclaims`, `rangeclaims`: lines.
    `designclaims`, `arrangements`: designs and families.
 
 Certified maps have their own order in `certified`. There `normalform` derives formulas from the

@@ -34,9 +34,9 @@ from itertools import pairwise
 
 from flint import fmpq
 
-from ptmcad.answer.regionmap import Adjacency, Cell, CriticalValue, NonAdjacency, Reason, Segment
+from ptmcad.answer.regionmap import Adjacency, Cell, NonAdjacency, Reason, Segment
 from ptmcad.text.flint_numbers import from_fraction
-from ptmcad.verification.claims import Claims, is_root, short, side
+from ptmcad.verification.claims import Claims, bracket, is_root, short
 from ptmcad.verification.projections import Heights, inside_stack
 from ptmcad.verification.report import Violation
 
@@ -222,8 +222,11 @@ def _search(claims: Claims, s: int, bottom: fmpq, top: fmpq, pairs: set[tuple[in
     left, right = claims.result.stacks[s], claims.result.stacks[s + 1]
     for v in Heights(claims.curves, value).separated(bottom, top):
         low, high = from_fraction(left.sample), from_fraction(right.sample)
+        width = high - low
         while claims.met_by(low, high, v) is not None:
-            low, high = _closer(low, high, value)
+            width /= 2
+            below, above = bracket(value, width)
+            low, high = max(low, below - width), min(high, above + width)
         pair = (claims.level(low, v), claims.level(high, v))
         if pair not in pairs:
             first, second = left.cells[pair[0]], right.cells[pair[1]]
@@ -231,12 +234,3 @@ def _search(claims: Claims, s: int, bottom: fmpq, top: fmpq, pairs: set[tuple[in
                 f"the adjacency of cells {first} and {second} is missing; the segment from {low} to {high} "
                 f"at height {v} joins them"
             )
-
-
-def _closer(low: fmpq, high: fmpq, value: CriticalValue) -> tuple[fmpq, fmpq]:
-    """A bracket of the critical value at most three quarters as wide."""
-    middle = (low + high) / 2
-    where = side(middle, value)
-    if where == 0:
-        return (low + middle) / 2, (middle + high) / 2
-    return (middle, high) if where < 0 else (low, middle)

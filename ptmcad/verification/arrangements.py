@@ -28,8 +28,6 @@ from dataclasses import replace
 from fractions import Fraction
 from itertools import count, pairwise
 
-from flint import fmpz_poly
-
 from ptmcad.answer.arrangement import Arrangement, correspondence
 from ptmcad.answer.changes import Changes
 from ptmcad.answer.counts import counted_by
@@ -38,12 +36,12 @@ from ptmcad.answer.regionmap import Kind, Merge, RegionMap
 from ptmcad.errors import HypothesisError, shown
 from ptmcad.options import Progress
 from ptmcad.text.enclosure import AlgebraicNumber, Enclosure
-from ptmcad.text.flint_numbers import from_fraction, simplest_fraction
+from ptmcad.text.flint_numbers import simplest_fraction
 from ptmcad.text.numerals import text_of
 from ptmcad.text.plane import PlanePolynomial
 from ptmcad.verification.planecurves import factors, polynomial
 from ptmcad.verification.report import Check, Unchecked, Violation, drawn
-from ptmcad.verification.rootcounts import roots_within
+from ptmcad.verification.rootcounts import is_alone
 
 NEAR = Fraction(1, 10**6)
 """Of the range: how far from a change at most, on both sides, members are classified."""
@@ -142,15 +140,11 @@ def _checked(found: Changes, fits: Fits, source: random.Random) -> str:
 def _check_numbers(numbers: Sequence[AlgebraicNumber | Enclosure]) -> None:
     """Each exact number is the only root of its polynomial between its bounds."""
     for number in numbers:
-        if isinstance(number, AlgebraicNumber):
-            p = fmpz_poly(list(number.polynomial))
-            low, high = (from_fraction(end) for end in (number.low, number.high))
-            roots = roots_within(p, low, high)
-            if roots != 1:
-                raise Violation(
-                    f"{roots} roots of a value's polynomial lie between its bounds {text_of(number.low)} "
-                    f"and {text_of(number.high)}, not one"
-                )
+        if isinstance(number, AlgebraicNumber) and not is_alone(number):
+            raise Violation(
+                f"not one root of a value's polynomial lies between its bounds {text_of(number.low)} "
+                f"and {text_of(number.high)}"
+            )
 
 
 def _gaps(found: Changes, rooms: Sequence[Fraction]) -> list[Fraction]:

@@ -10,9 +10,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
-from math import gcd, lcm
+from math import gcd
 
-from flint import arb, ctx, fmpq, fmpz_poly
+from flint import arb, ctx, fmpq, fmpq_poly, fmpz_poly
 
 from ptmcad.answer.regionmap import CriticalValue, RegionMap
 from ptmcad.errors import PoleError
@@ -25,10 +25,9 @@ from ptmcad.verification.derivation import (
     derivation_at,
     derivation_of,
 )
-from ptmcad.verification.fibrealgebra import SolutionAlgebra, fibre_over
+from ptmcad.verification.fibrealgebra import NotFinite, SolutionAlgebra, fibre_over
 from ptmcad.verification.kinds import SignMeaning, kind_of, meaning_of
-from ptmcad.verification.planecurves import Terms
-from ptmcad.verification.quotientalgebra import NotFinite
+from ptmcad.verification.planecurves import Terms, coefficients
 from ptmcad.verification.report import Violation
 from ptmcad.verification.rootcounts import (
     Interval,
@@ -55,32 +54,23 @@ class PlaneCurve:
     def degrees(self) -> tuple[int, int]:
         return (max(i for i, _, _ in self.terms), max(j for _, j, _ in self.terms))
 
-    def _coefficients(self, kept: int) -> list[fmpz_poly]:
-        """Coefficients, each in the other variable, of the powers of variable ``kept``."""
-        rows: list[list[int]] = [
-            [0] * (self.degrees[1 - kept] + 1) for _ in range(self.degrees[kept] + 1)
-        ]
-        for term in self.terms:
-            rows[term[kept]][term[1 - kept]] = term[2]
-        return [fmpz_poly(row) for row in rows]
-
     @cached_property
     def in_v(self) -> list[fmpz_poly]:
         """Coefficients in Z[u] of the powers of v."""
-        return self._coefficients(1)
+        return coefficients(self.terms)
 
     @cached_property
     def in_u(self) -> list[fmpz_poly]:
         """Coefficients in Z[v] of the powers of u."""
-        return self._coefficients(0)
+        return coefficients(self.terms, 0)
 
     def over(self, u: fmpq) -> fmpz_poly:
         """A positive multiple of p(u, v), in Z[v]."""
-        return _scaled([fmpq(c(u)) for c in self.in_v])
+        return fmpq_poly([c(u) for c in self.in_v]).numer()
 
     def along(self, v: fmpq) -> fmpz_poly:
         """A positive multiple of p(u, v), in Z[u]."""
-        return _scaled([fmpq(c(v)) for c in self.in_u])
+        return fmpq_poly([c(v) for c in self.in_u]).numer()
 
     def exponent_gcd(self, variable: int) -> int:
         """The largest k such that only powers of the variable's k-th power occur."""
@@ -89,11 +79,6 @@ class PlaneCurve:
     def deflated(self, k: int, m: int) -> Terms:
         """The terms with u for u^k and v for v^m."""
         return tuple((i // k, j // m, c) for i, j, c in self.terms)
-
-
-def _scaled(values: list[fmpq]) -> fmpz_poly:
-    scale = lcm(*(int(v.q) for v in values))
-    return fmpz_poly([int(v.p) * (scale // int(v.q)) for v in values])
 
 
 @dataclass(frozen=True)

@@ -29,10 +29,11 @@ from ptmcad.text.parsing import parse
 from ptmcad.text.syntax import names_in
 from ptmcad.verification.derivation import parameters_of
 from ptmcad.verification.parameterclaims import explained, named_in
-from ptmcad.verification.parameterlines import NotKnown, ParameterLine, SliceLines, check_maxima
+from ptmcad.verification.parameterlines import ParameterLine, SliceLines, check_maxima
 from ptmcad.verification.report import (
     Check,
     CheckProgress,
+    NotKnown,
     Unchecked,
     VerifyReport,
     Violation,
@@ -174,16 +175,13 @@ def _check_form(lines: _DesignLines) -> str:
         raise Violation("two axes have one name")
     if len({point.at for point in found.points}) < len(found.points):
         raise Violation("a design is listed twice among those that were evaluated")
-    if found.boxes:
-        number = (
-            f"{len(found.boxes)} boxes of designs"
-            if len(found.boxes) != 1
-            else "one box of designs"
-        )
-        if found.reason not in (
-            f"by branch and bound, {how} {number}" for how in ("over", "which was stopped at")
-        ):
-            raise Violation(f"the reason names another number of boxes than {len(found.boxes)}")
+    number = f"{len(found.boxes)} boxes" if len(found.boxes) > 1 else "one box"
+    reasons = (
+        f"by branch and bound, {how} {number} of designs"
+        for how in ("over", "which was stopped at")
+    )
+    if found.boxes and found.reason not in reasons:
+        raise Violation(f"the reason names another number of boxes than {len(found.boxes)}")
     best = None if found.value is None else found.value.high
     for point in found.points:
         if len(point.at) != len(found.over):
@@ -291,9 +289,8 @@ def _check_values(lines: _DesignLines, within: Within) -> str:
         except NotKnown:
             unknown += 1
             continue
-        longest = max(
-            (span.width for span in ranges), key=lambda width: width.low, default=_NOTHING
-        )
+        widths = [_NOTHING, *(span.width for span in ranges)]
+        longest = max(widths, key=lambda width: width.low)
         if (point.value is None) == lines.holds(design):
             raise Violation(
                 f"the design {_named(design)} has {'no' if point.value is None else 'a'} value, but "
@@ -314,11 +311,8 @@ def _check_values(lines: _DesignLines, within: Within) -> str:
                 found.value, Enclosure(high.low - low.high, high.high - low.low)
             ):
                 raise Violation("the value is not the distance of the range's two ends")
-    if unknown:
-        return Unchecked(
-            f"{len(found.points) - unknown} designs; of {unknown} more nothing was found out"
-        )
-    return f"{len(found.points)} designs"
+    text = f"{len(found.points) - unknown} designs"
+    return Unchecked(f"{text}; of {unknown} more nothing was found out") if unknown else text
 
 
 def _check_bound(lines: _DesignLines) -> str:
@@ -343,11 +337,10 @@ def _check_bound(lines: _DesignLines) -> str:
         except NotKnown:
             continue
         settled += 1
-        for span in ranges:
-            if span.width.low > box.bound:
-                raise Violation(
-                    f"the design {_named(design)} has a range longer than the bound of its box"
-                )
+        if any(span.width.low > box.bound for span in ranges):
+            raise Violation(
+                f"the design {_named(design)} has a range longer than the bound of its box"
+            )
     if not settled:
         return Unchecked(f"of {len(boxes)} random designs nothing was found out")
     text = f"at {settled} random designs no range is longer than the bound of their box"
@@ -383,10 +376,7 @@ def _check_extremes(lines: _DesignLines) -> str:
         found.working,
         lines.seed,
     )
-    try:
-        return check_maxima(both, found.maxima)
-    except NotKnown as reason:
-        return Unchecked(str(reason))
+    return check_maxima(both, found.maxima)
 
 
 def _share(source: random.Random) -> Fraction:

@@ -1,9 +1,9 @@
 """The solutions over one rational point: counts, signs and norms by the algebra of the equations.
 
-Guarantee: exact. The Groebner basis is that at the point itself (`quotientalgebra`), and counts come
-from signatures of trace forms: another elimination than the one over Q(x, y) in
-`ptmcad.exact.discriminant_variety`, and another count than the root isolation in
-`ptmcad.exact.counting`.
+Guarantee: exact. The Groebner basis is that at the point itself, by FLINT's own Buchberger algorithm
+in graded reverse lexicographic order with the last variable first. Counts come from signatures of
+trace forms: another elimination than the one over Q(x, y) in `ptmcad.exact.discriminant_variety`,
+and another count than the root isolation in `ptmcad.exact.counting`.
 
 The number of negative eigenvalues of a Hessian is that of the changes of sign in the sequence of
 its leading principal minors (Jacobi), in a basis in which none of them vanishes. The sums of the
@@ -18,9 +18,9 @@ from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
 from itertools import chain, pairwise, product
-from math import prod
+from math import lcm, prod
 
-from flint import fmpq, fmpq_mat, fmpq_mpoly
+from flint import Ordering, fmpq, fmpq_mat, fmpq_mpoly, fmpz_mpoly_ctx, fmpz_mpoly_vec
 
 from ptmcad.answer.counts import Counts
 from ptmcad.model import Model
@@ -33,9 +33,10 @@ from ptmcad.verification.principalminors import (
     leading_minors,
     negative_eigenvalues,
 )
-from ptmcad.verification.quotientalgebra import Monomial, NotFinite, algebra
 
 Matrices = Sequence[fmpq_mat]
+Monomial = tuple[int, ...]
+"""Exponents of the variables, last to first."""
 
 
 @dataclass(frozen=True)
@@ -112,26 +113,30 @@ class SolutionAlgebra:
         matrices = [self.jacobian, *map(self.matrix, self.conditions)]
         return [fmpq(c) for matrix in matrices for c in matrix.charpoly().coeffs()]
 
-    def signature(self, weight: fmpq_mat) -> tuple[int, int]:
-        """Numbers of positive and negative squares of the trace form (f, g) -> trace(weight f g).
-
-        Their difference is the sum of the weight's signs over the real solutions; their sum is the
-        number of different complex solutions where the weight is not zero.
+    def _signature(self, weight: fmpq_mat) -> int:
+        """The number of positive squares of the trace form (f, g) -> trace(weight f g), less that of
+        negative ones: the sum of the weight's signs over the real solutions.
         """
-        powers = self._powers
-        n = self.dimension
-        form = _traces_of_products([weight * p for p in powers], powers)
+        n, traces = self.dimension, self._traces * weight
+        form = fmpq_mat(n, n, [c for p in self._powers for c in (traces * p).entries()])
         # all eigenvalues are real, so Descartes' rule of signs is exact
         coefficients = [fmpq(c) for c in form.charpoly().coeffs()]
         zero = next(k for k, c in enumerate(coefficients) if c != 0)
         signs = [1 if c > 0 else -1 for c in coefficients if c != 0]
         positive = sum(a != b for a, b in pairwise(signs))
-        return positive, n - zero - positive
+        return 2 * positive + zero - n
 
     @cached_property
     def _powers(self) -> list[fmpq_mat]:
         """The matrices of multiplication by the basis."""
         return [_product(_identity(self.dimension), self.tables, m) for m in self.basis]
+
+    @cached_property
+    def _traces(self) -> fmpq_mat:
+        """A row: the trace, as a linear function of the coordinates in the basis."""
+        n = range(self.dimension)
+        traces = [sum((p[k, k] for k in n), fmpq(0)) for p in self._powers]
+        return fmpq_mat(1, self.dimension, traces)
 
     def counts(self) -> Counts | None:
         """Numbers of the real solutions that count, by index and stability; None when some solution
@@ -215,8 +220,7 @@ class SolutionAlgebra:
         """
         total = 0
         for exponents in product((1, 2), repeat=len(positive)):
-            plus, minus = self.signature(_product(weight, positive, exponents))
-            total += plus - minus
+            total += self._signature(_product(weight, positive, exponents))
         return total >> len(positive)
 
     def _index(self, required: Matrices) -> tuple[int, ...]:
@@ -317,15 +321,76 @@ def _identity(n: int) -> fmpq_mat:
     return fmpq_mat(n, n, [fmpq(int(i == j)) for i in range(n) for j in range(n)])
 
 
-def _traces_of_products(first: Matrices, second: Matrices) -> fmpq_mat:
-    """The traces of f g for all f of the first and g of the second matrices.
+class NotFinite(ArithmeticError):
+    """The equations have infinitely many complex solutions at the point."""
 
-    A trace is the sum of the products of the entries of f and of the transposed g, so all of them
-    are one product.
-    """
-    size = sum(
-        len(f.entries()) for f in first[:1]
-    )  # there is no matrix where there are no solutions
-    rows = fmpq_mat(len(first), size, [c for f in first for c in f.entries()])
-    columns = fmpq_mat(len(second), size, [c for g in second for c in g.transpose().entries()])
-    return rows * columns.transpose()
+
+def algebra(
+    equations: list[fmpq_mpoly], variables: int
+) -> tuple[tuple[Monomial, ...], tuple[fmpq_mat, ...]]:
+    """The standard monomials, and the matrix of multiplication by each variable, last to first."""
+    rules = _reduced_basis(equations, variables)
+    # for each variable the power of it that is a leading monomial, 0 where 1 is one
+    powers = [[lead[k] for lead in rules if sum(lead) == lead[k]] for k in range(variables)]
+    if not all(powers):
+        raise NotFinite
+    bounds = map(min, powers)
+    basis = tuple(
+        sorted(
+            (
+                m
+                for m in product(*map(range, bounds))
+                if not any(_divides(lead, m) for lead in rules)
+            ),
+            key=lambda m: (sum(m), m),
+        )
+    )
+    place = {m: i for i, m in enumerate(basis)}
+    known: dict[Monomial, list[fmpq]] = {}
+
+    def normal(m: Monomial) -> list[fmpq]:
+        """Coordinates of a monomial, by the rules, recursively."""
+        if m in known:
+            return known[m]
+        row = [fmpq(0)] * len(basis)
+        if m in place:
+            row[place[m]] = fmpq(1)
+        else:
+            lead = next(r for r in rules if _divides(r, m))
+            for tail, c in rules[lead].items():
+                times = tuple(t + x - y for t, x, y in zip(tail, m, lead, strict=True))
+                for i, x in enumerate(normal(times)):
+                    if x != 0:
+                        row[i] += c * x
+        known[m] = row
+        return row
+
+    tables, size = [], len(basis)
+    for k in range(variables):
+        columns = [c for m in basis for c in normal(tuple(e + (i == k) for i, e in enumerate(m)))]
+        tables.append(fmpq_mat(size, size, columns).transpose())
+    return basis, tuple(tables)
+
+
+def _reduced_basis(
+    equations: list[fmpq_mpoly], variables: int
+) -> dict[Monomial, dict[Monomial, fmpq]]:
+    """A Groebner basis as rules: leading monomial -> what it is modulo the ideal."""
+    ring: fmpz_mpoly_ctx = fmpz_mpoly_ctx.get(
+        tuple(f"x{k}" for k in range(variables)), Ordering.degrevlex
+    )
+    integral = []
+    for e in equations:
+        scale = lcm(*(int(c.q) for c in e.coeffs()))
+        terms = {m[::-1]: int((c * scale).p) for m, c in e.to_dict().items()}
+        integral.append(ring.from_dict(terms).primitive()[1])
+    vector = fmpz_mpoly_vec(integral, ring)
+    rules: dict[Monomial, dict[Monomial, fmpq]] = {}
+    for p in vector.buchberger_naive().autoreduction():
+        (lead, c), *tail = [(tuple(int(e) for e in m), fmpq(c)) for m, c in p.terms()]
+        rules[lead] = {m: -d / c for m, d in tail}
+    return rules
+
+
+def _divides(a: Monomial, b: Monomial) -> bool:
+    return all(x <= y for x, y in zip(a, b, strict=True))

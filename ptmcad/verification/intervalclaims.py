@@ -1,13 +1,17 @@
-"""Checks of exact intervals along a line, and of the changes between them, against the gaps between
-all values at which counts can change.
+"""Checks of intervals along a line, and of the changes between them: exact ones against the gaps
+between all values at which counts can change, enclosed ones, on which springs have free lengths,
+point by point.
 
-Guarantee: intervals are all of those that are asked for, each as long as it can be; counts on the
-sides of changes are right, and none is missing where counts differ.
+Guarantee: exact intervals are all of those that are asked for, each as long as it can be; counts on
+the sides of changes are right, and none is missing where counts differ. Of enclosed ones counts are
+those that are stored at the samples and next to both ends; with the enclosed changes the intervals
+cover the window. That nothing changes between these points is not checked.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from fractions import Fraction
 from itertools import groupby, pairwise
 from typing import Any
@@ -15,12 +19,17 @@ from typing import Any
 from flint import fmpz_poly
 
 from ptmcad.answer.intervals import End
+from ptmcad.question.counts import Count
+from ptmcad.question.slice import Slice
 from ptmcad.text.enclosure import AlgebraicNumber
-from ptmcad.text.flint_numbers import from_fraction
-from ptmcad.text.numerals import fraction_of, integer_of, shortest_text
+from ptmcad.text.numerals import approximate_text, fraction_of, integer_of, shortest_text
+from ptmcad.verification.certified.counted import numbers_in
+from ptmcad.verification.certified.coverclaims import CertifiedClaims
+from ptmcad.verification.normalform.boxes import Unproved
 from ptmcad.verification.parameterlines import LineGap, ParameterLine
-from ptmcad.verification.report import Violation
-from ptmcad.verification.rootcounts import roots_within
+from ptmcad.verification.report import Unchecked, Violation
+from ptmcad.verification.rootcounts import is_alone
+from ptmcad.verification.solutions import in_words, map_of
 
 Entry = Mapping[str, Any]
 """A part of a document, as JSON has it."""
@@ -57,7 +66,7 @@ def check_intervals(
                 index,
             ):
                 raise Violation(
-                    f"{entry['total']} solutions are said to be {where}, where there are {there}"
+                    f"{entry['total']} solutions are said to be {where}, where there are {in_words(there)}"
                 )
         covering += inside
     runs = [
@@ -122,7 +131,7 @@ def _end(line: ParameterLine, data: Entry) -> End:
     return number
 
 
-def enclosed_end(data: Entry) -> tuple[Fraction, Fraction]:
+def _enclosed_end(data: Entry) -> tuple[Fraction, Fraction]:
     """The numbers between which an end is said to be.
 
     Raises
@@ -140,10 +149,10 @@ def _root(data: Entry) -> tuple[AlgebraicNumber, fmpz_poly]:
     polynomial = fmpz_poly(
         [integer_of(c.removeprefix("-")) * (-1 if c[:1] == "-" else 1) for c in data["polynomial"]]
     )
-    number = AlgebraicNumber(tuple(map(int, polynomial)), *enclosed_end(data))
+    number = AlgebraicNumber(tuple(map(int, polynomial)), *_enclosed_end(data))
     if sum(multiplicity for _, multiplicity in polynomial.factor()[1]) != 1:
         raise Violation(f"the polynomial of an end near {float(number):.10g} is not irreducible")
-    if roots_within(polynomial, from_fraction(number.low), from_fraction(number.high)) != 1:
+    if not is_alone(number):
         raise Violation(
             f"an end near {float(number):.10g} is not the only root of its polynomial there"
         )
@@ -157,3 +166,85 @@ def _side(end: End, value: Fraction) -> int:
 
 def _is_between(value: Fraction, low: End, high: End) -> bool:
     return _side(low, value) < 0 <= _side(high, value)
+
+
+_COUNTS = ("total", "stable", "index")
+_NEAR = 2**7
+"""Both ends are looked at from inside, such a share of the interval away."""
+
+
+def check_enclosed(found: Entry, slice: Slice) -> str:
+    """Counts at the sample and next to both ends of each interval.
+
+    Raises
+    ------
+    Violation
+    """
+    number, unknown = 0, 0
+    ((other, value),) = found["at"].items()
+    _check_cover(found, slice)
+    counting = CertifiedClaims(map_of(replace(slice, count=Count.TOTAL), ())).counting
+    for entry in found["intervals"]:
+        low, high = fraction_of(entry["low"]["high"]), fraction_of(entry["high"]["low"])
+        near = (high - low) / _NEAR
+        if not low < fraction_of(entry["sample"]) < high:
+            raise Violation(f"the sample {entry['sample']} is not in its interval")
+        for at in (fraction_of(entry["sample"]), low + near, high - near):
+            point = (
+                (at, fraction_of(value))
+                if other == slice.axis_names[1]
+                else (fraction_of(value), at)
+            )
+            try:
+                there = counting.at(*point).counts
+            except Unproved:
+                unknown += 1
+                continue
+            said = {name: entry[name] for name in _COUNTS if entry[name] is not None}
+            true = numbers_in(there)
+            # what is not known here, as stable solutions of loops are not, contradicts nothing
+            is_known = bool(said) and said.keys() <= true.keys()
+            number, unknown = number + is_known, unknown + (not is_known)
+            for name in said.keys() & true.keys():
+                if said[name] != (list(index) if isinstance(index := true[name], tuple) else index):
+                    counts = ", ".join(f"{count} {n}" for count, n in said.items())
+                    raise Violation(
+                        f"{counts} is said to be at {shortest_text(at)}; there are {there}"
+                    )
+    checked = f"{number} points"
+    if unknown or not number:
+        return Unchecked(f"{checked}; {unknown} were not decided")
+    return checked
+
+
+def _check_cover(found: Entry, slice: Slice) -> None:
+    """Enclosed intervals are in order and end where changes or the window do; no part of the window
+    is in neither.
+
+    Raises
+    ------
+    Violation
+    """
+    axis = next(axis for axis in slice.axes if axis.name == found["along"]["name"])
+    changes = [_enclosed_end(change["at"]) for change in found["changes"]]
+    known = {*changes, (axis.low, axis.low), (axis.high, axis.high)}
+    intervals = [
+        (_enclosed_end(entry["low"]), _enclosed_end(entry["high"])) for entry in found["intervals"]
+    ]
+    for low, high in intervals:
+        if low not in known or high not in known:
+            raise Violation("an enclosed interval ends where nothing changes")
+        if not (axis.low <= low[1] < high[0] <= axis.high):
+            raise Violation("the ends of an enclosed interval are not in their order")
+    for (_, end), (start, _) in pairwise(intervals):
+        if end[0] > start[0] or end[1] > start[1]:
+            raise Violation("enclosed intervals overlap, or are not in their order")
+    reach = axis.low
+    for part in sorted([*changes, *((low[1], high[0]) for low, high in intervals)]):
+        if part[0] > reach:
+            break
+        reach = max(reach, part[1])
+    if reach < axis.high:
+        raise Violation(
+            f"nothing is said of {axis.name} next to {approximate_text(reach)}, which is in the window"
+        )

@@ -31,7 +31,7 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property, partial
-from itertools import permutations
+from itertools import islice, permutations
 from math import gcd, lcm, prod
 
 from flint import fmpq, fmpq_mat
@@ -241,7 +241,7 @@ def _product_of_powers(
     for k in range(len(claims.result.components)):
         while (pair := _separating_points(k, norms)) is None:
             draw()
-        exponents.append(_exponent(claims, k, *pair, what))
+        exponents.append(_exponent(*pair))
     for _ in range(max(POINTS - len(norms), FRESH_POINTS)):
         draw()
     constants = [
@@ -275,28 +275,17 @@ def _separating_points(k: int, norms: Sequence[_Norm]) -> _Pair | None:
     return None
 
 
-def _exponent(claims: Claims, k: int, first: _Norm, second: _Norm, own: int, what: str) -> int:
-    """The exponent e of component k, if the norm is a constant times powers of the components.
+def _exponent(first: _Norm, second: _Norm, own: int) -> int:
+    """The exponent e of a component, if the norm is a constant times powers of the components.
 
     The norms' quotient at the two points is free of the constant, and its part with primes of
-    ``own`` is own^e: these primes divide no other value. Where it is no power of ``own``, the norm
-    is no such product.
-
-    Raises
-    ------
-    Violation
+    ``own`` is own^e: these primes divide no other value.
     """
     quotient = first[1] / second[1]
     for part, sign in ((quotient.numerator, 1), (quotient.denominator, -1)):
-        shared, e = abs(part) // _without(abs(part), own), 0
-        while shared % own == 0:
-            shared, e = shared // own, e + 1
-        if shared > 1:
-            raise Violation(
-                f"the norm of {what} at {_at(claims, first[0])} is no constant times powers of the stored "
-                f"components, as its prime factors show: component {k}, or another one, is wrong or "
-                "missing"
-            )
+        e = 0
+        while part % own ** (e + 1) == 0:
+            e += 1
         if e:
             return sign * e
     return 0
@@ -304,26 +293,22 @@ def _exponent(claims: Claims, k: int, first: _Norm, second: _Norm, own: int, wha
 
 def _check_poles(claims: Claims, points: Iterator[FibrePoint]) -> None:
     result = claims.result
-    far: list[FibrePoint] = []
-    while len(far) < FAR_POINTS:
-        far.append(next(points))
+    far = list(islice(points, FAR_POINTS))
     for k, c in enumerate(result.components):
-        asked = []
-        if c.kind is Kind.INFINITY:
-            asked.append((_has_poles, "at infinity, but solutions have no pole on it"))
-        if c.left_out == HARMLESS:
-            if claims.result.slice.model.reals:
-                raise Violation(
-                    f"component {k} is left out, but real solutions may leave every bounded set on it"
-                )
-            asked.append((_is_harmless, "harmless, but det H may vanish at solutions near it"))
-        for holds, message in asked:
-            while (
-                len(clear := [p for p in far if _far_part(k, p).bit_length() > CLEAR_BITS])
-                < FAR_POINTS
-            ):
+        harmless = c.left_out == HARMLESS
+        if harmless and result.slice.model.reals:
+            raise Violation(
+                f"component {k} is left out, but real solutions may leave every bounded set on it"
+            )
+        for is_said, holds, message in (
+            (c.kind is Kind.INFINITY, _has_poles, "at infinity, but solutions have no pole on it"),
+            (harmless, _is_harmless, "harmless, but det H may vanish at solutions near it"),
+        ):
+            clear = [p for p in far if _far_part(k, p).bit_length() > CLEAR_BITS]
+            while is_said and len(clear) < FAR_POINTS:
                 far.append(next(points))
-            if not any(holds(k, point) for point in clear):
+                clear += far[-1:] * (_far_part(k, far[-1]).bit_length() > CLEAR_BITS)
+            if is_said and not any(holds(k, point) for point in clear):
                 text = c.polynomial.text(result.slice.axis_names)[:60]
                 raise Violation(f"component {k} is said to be {message}: {text}")
     foreign = [_foreign_poles(point) for point in far]

@@ -12,9 +12,11 @@ points of a line.
 from __future__ import annotations
 
 import random
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from fractions import Fraction
+from functools import partial
 from itertools import product
+from typing import TypeVar
 
 from flint import fmpq_mpoly
 
@@ -28,10 +30,12 @@ from ptmcad.text.plane import PlanePolynomial
 from ptmcad.text.syntax import names_in
 from ptmcad.verification.claims import Claims
 from ptmcad.verification.derivation import Derivation, derivation_at, derivation_of
+from ptmcad.verification.fibrealgebra import NotFinite, algebra
 from ptmcad.verification.norms import BITS, check_identity, condition_exponents, random_points
 from ptmcad.verification.planecurves import PLANE, factors, polynomial
-from ptmcad.verification.quotientalgebra import NotFinite, algebra
 from ptmcad.verification.report import Violation
+
+T = TypeVar("T")
 
 _LINE_POINTS = 2
 """Random points of a line at which solutions are counted."""
@@ -102,14 +106,8 @@ def explained(texts: Mapping[str, str], known: Mapping[str, Expression]) -> dict
             raise Violation(
                 f"the texts kept for {', '.join(sorted(waiting))[:80]} name what is not explained"
             )
-        name, text = ready, waiting.pop(ready)
-        try:
-            found[name] = parse(text, known)
-        except ExpressionError as error:
-            raise Violation(
-                f"the text kept for {name}, {text[:40]!r}, is no expression: {error}"
-            ) from error
-        known.setdefault(name, found[name])
+        found[ready] = _read(ready, waiting.pop(ready), partial(parse, names=known))
+        known.setdefault(ready, found[ready])
     return found
 
 
@@ -124,8 +122,12 @@ def named_in(name: str, text: str) -> set[str]:
     ------
     Violation
     """
+    return set(_read(name, text, names_in))
+
+
+def _read(name: str, text: str, reader: Callable[[str], T]) -> T:
     try:
-        return set(names_in(text))
+        return reader(text)
     except ExpressionError as error:
         raise Violation(
             f"the text kept for {name[:40]!r}, {text[:40]!r}, is no expression: {error}"

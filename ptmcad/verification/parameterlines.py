@@ -42,9 +42,9 @@ from ptmcad.text.expressions import Expression
 from ptmcad.text.flint_numbers import from_fraction, simplest_fraction, to_fraction
 from ptmcad.text.numerals import shortest_text
 from ptmcad.verification.derivation import not_positive
-from ptmcad.verification.fibrealgebra import fibre
-from ptmcad.verification.quotientalgebra import NotFinite
-from ptmcad.verification.report import Unchecked, Violation
+from ptmcad.verification.fibrealgebra import NotFinite, fibre
+from ptmcad.verification.planecurves import coefficients
+from ptmcad.verification.report import NotKnown, Unchecked, Violation
 from ptmcad.verification.rootcounts import isolating_intervals, squarefree
 
 FRESH = 3
@@ -54,10 +54,6 @@ _SPARE = prod(p for p in range(2, 100) if all(p % q for q in range(2, p))) ** 2
 """Numerator and denominator of a value may have had such factors in common."""
 _NARROW = 2**200
 """Ends are known to such shares of the range at least."""
-
-
-class NotKnown(ArithmeticError):
-    """Where counts can change on the line was not found out."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -237,8 +233,7 @@ def _read(value: fmpz, base: int) -> fmpz_poly:
 def _row(terms: Sequence[tuple[int, int, Fraction]]) -> fmpz_poly:
     """A multiple of a polynomial in the first axis."""
     scale = lcm(*(c.denominator for _, _, c in terms))
-    row = {i: int(c * scale) for i, _, c in terms}
-    return fmpz_poly([row.get(i, 0) for i in range(1 + max(row))])
+    return coefficients(tuple((i, 0, int(c * scale)) for i, _, c in terms))[0]
 
 
 ACROSS = 3

@@ -53,13 +53,13 @@ def discriminant(p: Terms) -> fmpz_poly:
     if max(j for _, j, _ in p) < 2:
         return fmpz_poly([1])
     # res(p, p') is the leading coefficient times the discriminant
-    return resultant(p, tuple((i, j - 1, j * c) for i, j, c in p if j)) // _rows(p)[-1]
+    return resultant(p, tuple((i, j - 1, j * c) for i, j, c in p if j)) // coefficients(p)[-1]
 
 
 @lru_cache(maxsize=256)
 def resultant(p: Terms, q: Terms) -> fmpz_poly:
     """The resultant of p and q with respect to v, up to sign, from its values at whole numbers."""
-    rows = _rows(p), _rows(q)
+    rows = coefficients(p), coefficients(q)
     n, m = (len(one) - 1 for one in rows)
     of_p, of_q = (max(int(c.degree()) for c in one) for one in rows)
     whole_p, whole_q = (max(i + j for i, j, _ in one) for one in (p, q))
@@ -83,9 +83,10 @@ def resultant(p: Terms, q: Terms) -> fmpz_poly:
     return found
 
 
-def _rows(p: Terms) -> list[fmpz_poly]:
-    """The coefficients in Z[u] of the powers of v."""
-    rows: list[dict[int, int]] = [{} for _ in range(1 + max(j for _, j, _ in p))]
-    for i, j, c in p:
-        rows[j][i] = c
-    return [fmpz_poly([row.get(i, 0) for i in range(max(row, default=-1) + 1)]) for row in rows]
+def coefficients(p: Terms, kept: int = 1) -> list[fmpz_poly]:
+    """Coefficients, each in the other variable, of the powers of variable ``kept``: of v in Z[u]."""
+    heights, lengths = (1 + max(term[k] for term in p) for k in (kept, 1 - kept))
+    rows = [[0] * lengths for _ in range(heights)]
+    for term in p:
+        rows[term[kept]][term[1 - kept]] = term[2]
+    return [fmpz_poly(row) for row in rows]

@@ -25,7 +25,6 @@ from ptmcad.text.expressions import constant
 from ptmcad.verification.certified.cellsamples import check_cell, why_not_listed
 from ptmcad.verification.certified.coverclaims import CertifiedClaims
 from ptmcad.verification.certified.models import BUDGETS
-from ptmcad.verification.claims import Claims
 from ptmcad.verification.derivation import parameters_of
 from ptmcad.verification.kinds import kind_of, meaning_of
 from ptmcad.verification.normalform.boxes import Unproved
@@ -159,7 +158,7 @@ def _check_in_balls(
     stable = meaning.is_stable(signs) if is_told else None
     if not is_told and pose.stable is not None:
         yield f"whether pose {k + 1} is stable"
-    _check_said(claims, k, pose, meaning.index(signs), stable if is_told else pose.stable)
+    _check_said(k, pose, meaning.index(signs), stable if is_told else pose.stable)
     for name, said in pose.further.items():
         count = Count(name)
         if not kind_of(count).is_predicate:
@@ -179,7 +178,7 @@ def _check_in_balls(
             raise Violation(f"that pose {k + 1} is {name} is {true}, not {said}")
 
 
-def _check_said(claims: Claims, k: int, pose: Pose, index: int | None, stable: bool | None) -> None:
+def _check_said(k: int, pose: Pose, index: int | None, stable: bool | None) -> None:
     """Index and stability of a pose are these.
 
     Raises
@@ -216,20 +215,16 @@ def _check_without_free_lengths(claims: CertifiedClaims, cell: Cell, found: Pose
         raise Violation(f"the status is {found.status.value}, with {degenerate} degenerate poses")
     check_disjoint(0, cell, found.model)
     for k, (pose, box) in enumerate(zip(found.equilibria, cell.solutions, strict=True)):
+        index = stable = None
         try:
-            if pose.multiplicity > 1:
-                _check_degenerate(claims, cell, box)
-                signs = ""
-            else:
+            if pose.multiplicity == 1:
                 signs, _ = signs_in(claims, cell, box)
+                index, stable = claims.meaning.index(signs), claims.meaning.is_stable(signs)
+            elif not (fibre := claims.fibre_at(*cell.sample)).is_degenerate(place_of(fibre, box)):
+                raise Violation("the solution in it is called degenerate; it is regular")
         except Violation as violation:
             raise Violation(f"the box of pose {k + 1}: {violation}") from None
-        if pose.multiplicity > 1:
-            _check_said(claims, k, pose, None, None)
-        else:
-            _check_said(
-                claims, k, pose, claims.meaning.index(signs), claims.meaning.is_stable(signs)
-            )
+        _check_said(k, pose, index, stable)
     if number > listed:
         return Unchecked(f"{listed} poses hold, and {number - listed} more are not listed")
     if degenerate:
@@ -237,18 +232,6 @@ def _check_without_free_lengths(claims: CertifiedClaims, cell: Cell, found: Pose
             f"{number} different poses; of the degenerate ones ({degenerate}) the multiplicity"
         )
     return f"{number} poses"
-
-
-def _check_degenerate(claims: CertifiedClaims, cell: Cell, box: Solution) -> None:
-    """The only solution in a box that counts is degenerate.
-
-    Raises
-    ------
-    Violation
-    """
-    fibre = claims.fibre_at(*cell.sample)
-    if not fibre.is_degenerate(place_of(fibre, box)):
-        raise Violation("the solution in it is called degenerate; it is regular")
 
 
 def _map_of(found: Poses) -> RegionMap:
@@ -277,8 +260,5 @@ def _box(pose: Pose, in_angles: bool) -> Solution:
     signs = (
         "" if pose.index is None else "+" * (len(pose.eigenvalues) - pose.index) + "-" * pose.index
     )
-    return Solution(
-        tuple(x.center for x in numbers),
-        max((x.radius for x in numbers), default=_EXACT) or _EXACT,
-        signs,
-    )
+    widest = max((x.radius for x in numbers), default=Fraction(0))
+    return Solution(tuple(x.center for x in numbers), widest or _EXACT, signs)

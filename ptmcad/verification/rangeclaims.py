@@ -3,12 +3,13 @@ and none is missing.
 
 Guarantee: of exact intervals that of `ptmcad.verification.parameterlines`; they are all, and each is
 as long as it can be. Of enclosed ones, with free lengths, that of
-`ptmcad.verification.enclosedclaims`.
+`ptmcad.verification.intervalclaims`.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
+from dataclasses import dataclass
 from fractions import Fraction
 from functools import partial
 
@@ -22,11 +23,14 @@ from ptmcad.text.parsing import parse
 from ptmcad.verification.certified.parameterdomain import check_domain
 from ptmcad.verification.claims import Claims
 from ptmcad.verification.derivation import parameters_of
-from ptmcad.verification.enclosedclaims import check_enclosed
-from ptmcad.verification.intervalclaims import Entry, check_changes, check_intervals
+from ptmcad.verification.intervalclaims import (
+    Entry,
+    check_changes,
+    check_enclosed,
+    check_intervals,
+)
 from ptmcad.verification.parameterclaims import check_text
 from ptmcad.verification.parameterlines import (
-    NotKnown,
     ParameterLine,
     SliceLines,
     check_maxima,
@@ -35,6 +39,7 @@ from ptmcad.verification.parameterlines import (
 from ptmcad.verification.report import (
     Check,
     CheckProgress,
+    NotKnown,
     Unchecked,
     VerifyReport,
     Violation,
@@ -70,65 +75,54 @@ def verify_range(
     maxima : where it says that ranges over the other axis are longest.
     seed : of the random points of lines; a fresh one when None.
     """
-    chosen = drawn(seed)
-    claims = Claims(map_of(slice, ()))
-
-    def check_texts(_: object) -> str:
-        _check_axes(data, slice)
-        return check_text(claims)
-
-    steps: list[tuple[str, str, Callable[[_Asked], str]]] = [
-        ("parameters as written", "expressions compared", check_texts),
-        ("signs of parameters", "root counts, elimination", lambda _: check_domain(claims)),
-    ]
-    steps += [
-        (name, method, check)
-        for part, name, method, check in (
-            ("line", "intervals of the line", "norms read off one fibre, signatures", _check_line),
-            (
-                "over",
-                "intervals of the rows",
-                "norms read off one fibre, signatures",
-                partial(_check_rows, maxima=maxima),
-            ),
-            (
-                "over",
-                "extremes",
-                "ranges on the lines themselves",
-                partial(_check_extremes, maxima=maxima),
-            ),
-            (
-                "enclosed",
-                "intervals of the enclosed line",
-                "Krawczyk's test and exclusion in balls",
-                _check_enclosed_line,
-            ),
-        )
-        if part in data
-    ]
-    checks = checked((data, slice, chosen), steps, (), CheckProgress(progress))
+    norms, balls = "norms read off one fibre, signatures", "Krawczyk's test and exclusion in balls"
+    steps = (
+        ("request", "parameters as written", "expressions compared", _check_request),
+        ("request", "signs of parameters", "root counts, elimination", _check_signs),
+        ("line", "intervals of the line", norms, _check_line),
+        ("over", "intervals of the rows", norms, _check_rows),
+        ("over", "extremes", "ranges on the lines themselves", _check_extremes),
+        ("enclosed", "intervals of the enclosed line", balls, _check_enclosed_line),
+    )
+    asked = _AskedRange(data, slice, maxima, drawn(seed))
+    chosen = [step[1:] for step in steps if step[0] in data]
+    checks = checked(asked, chosen, (), CheckProgress(progress))
     checks += [
         Check(name, "", None, words) for part, (name, words) in UNCHECKED.items() if part in data
     ]
     return VerifyReport(tuple(checks))
 
 
-_Asked = tuple[Entry, Slice, str]
-"""The document, its slice, and the seed."""
+@dataclass(frozen=True, slots=True)
+class _AskedRange:
+    """The document, its slice, where it says that ranges are longest, and the seed."""
+
+    data: Entry
+    slice: Slice
+    maxima: Sequence[Maximum]
+    seed: str
+
+    def line(self, along: Entry, value: Fraction) -> ParameterLine:
+        """The line along one axis at a value of the other one."""
+        slice, (low, high) = self.slice, map(fraction_of, along["window"])
+        known = {
+            name: axis(0) if name == along["name"] else constant(value) for name in slice.axis_names
+        }
+        texts = {
+            name: slice.parameters[name].to_text(slice.axis_names)
+            for name in parameters_of(slice.model)
+        }
+        parameters = {name: parse(text, known) for name, text in texts.items()}
+        return ParameterLine(slice.model, parameters, low, high, self.seed)
 
 
-def _line(slice: Slice, along: Entry, seed: str, value: Fraction) -> ParameterLine:
-    """The line along one axis at a value of the other one."""
-    low, high = map(fraction_of, along["window"])
-    known = {
-        name: axis(0) if name == along["name"] else constant(value) for name in slice.axis_names
-    }
-    texts = {
-        name: slice.parameters[name].to_text(slice.axis_names)
-        for name in parameters_of(slice.model)
-    }
-    parameters = {name: parse(text, known) for name, text in texts.items()}
-    return ParameterLine(slice.model, parameters, low, high, seed)
+def _check_request(asked: _AskedRange) -> str:
+    _check_axes(asked.data, asked.slice)
+    return check_text(Claims(map_of(asked.slice, ())))
+
+
+def _check_signs(asked: _AskedRange) -> str:
+    return check_domain(Claims(map_of(asked.slice, ())))
 
 
 def _check_axes(data: Entry, slice: Slice) -> None:
@@ -175,36 +169,30 @@ def _check_axis(key: str, direction: str, found: Entry, axis: Axis) -> None:
         raise Violation(f"{key}: {direction} is not the axis {axis} of the slice")
 
 
-def _check_line(asked: _Asked) -> str:
-    data, slice, seed = asked
-    found = data["line"]
+def _check_line(asked: _AskedRange) -> str:
+    found = asked.data["line"]
     (value,) = map(fraction_of, found["at"].values())
-    try:
-        line = _line(slice, found["along"], seed, value)
-        gaps = line.gaps()
-        check_intervals(line, gaps, found["intervals"], None)
-        check_changes(line, gaps, found["changes"])
-    except NotKnown as reason:
-        return Unchecked(str(reason))
-    return f"{len(found['intervals'])} intervals; seed {seed}"
+    line = asked.line(found["along"], value)
+    gaps = line.gaps()
+    check_intervals(line, gaps, found["intervals"], None)
+    check_changes(line, gaps, found["changes"])
+    return f"{len(found['intervals'])} intervals; seed {asked.seed}"
 
 
-def _check_enclosed_line(asked: _Asked) -> str:
-    data, slice, _ = asked
-    return check_enclosed(data["enclosed"], slice)
+def _check_enclosed_line(asked: _AskedRange) -> str:
+    return check_enclosed(asked.data["enclosed"], asked.slice)
 
 
-def _check_rows(asked: _Asked, maxima: Sequence[Maximum]) -> str:
-    data, slice, seed = asked
-    found, unknown = data["over"], 0
+def _check_rows(asked: _AskedRange) -> str:
+    found, unknown = asked.data["over"], 0
     # what earlier versions do not say is the number of the paper's mechanism, or that of all parts
     parts = [part for row in found["rows"] for part in row["operation"]]
     working = found.get("stable", next(map(_working, parts), 2))
-    longest = max((m.width.high for m in maxima), default=Fraction(0))
+    longest = max((m.width.high for m in asked.maxima), default=Fraction(0))
     counts: list[Counts] = []
     for row in found["rows"]:
         value = fraction_of(row["value"])
-        line = _line(slice, found["along"], seed, value)
+        line = asked.line(found["along"], value)
         try:
             gaps = line.gaps()
         except NotKnown:
@@ -215,10 +203,10 @@ def _check_rows(asked: _Asked, maxima: Sequence[Maximum]) -> str:
         if any(span.width.low > longest for span in ranges_in(gaps, working)):
             where = f"{found['over']['name']} = {shortest_text(value)}"
             raise Violation(f"at {where} there is a longer range than the longest one")
-    extent = f"{len(found['rows']) - unknown} rows; seed {seed}"
+    extent = f"{len(found['rows']) - unknown} rows; seed {asked.seed}"
     if unknown:
         extent = f"{extent}; of {unknown} more nothing was found out"
-    if "stable" in found and not _occurs(asked, working, counts, maxima):
+    if "stable" in found and not _occurs(asked, working, counts):
         return Unchecked(f"{extent}; nor that {working} is the greatest number")
     return Unchecked(extent) if unknown else extent
 
@@ -227,9 +215,7 @@ def _working(part: Entry) -> int:
     return int(part["total"] if part["stable"] is None else part["stable"])
 
 
-def _occurs(
-    asked: _Asked, working: int, counts: Sequence[Counts], maxima: Sequence[Maximum]
-) -> bool:
+def _occurs(asked: _AskedRange, working: int, counts: Sequence[Counts]) -> bool:
     """Whether the claimed number of an operation range was found on a row, or next to where ranges
     are longest; the least that is asked for need not be anywhere.
 
@@ -238,16 +224,15 @@ def _occurs(
     Violation
         When it is not the greatest one that was found, or is nowhere.
     """
-    data, slice, seed = asked
-    most, least = operation_number(slice.model, counts), operation_number(slice.model, ())
+    most, least = (operation_number(asked.slice.model, there) for there in (counts, ()))
     if most > working:
         raise Violation(f"operation ranges are said to have {working}; there are {most} solutions")
-    if not maxima and working != least:
+    if not asked.maxima and working != least:
         raise Violation(f"there is no range with {working} solutions, so they are not the greatest")
     if working == most:
         return True
-    for m in maxima:
-        line = _line(slice, data["over"]["along"], seed, m.at.center)
+    for m in asked.maxima:
+        line = asked.line(asked.data["over"]["along"], m.at.center)
         try:
             if any(gap.working == working for gap in line.gaps()):
                 return True
@@ -256,23 +241,20 @@ def _occurs(
     return False
 
 
-def _check_extremes(asked: _Asked, maxima: Sequence[Maximum]) -> str:
-    data, slice, seed = asked
-    found = data["over"]
+def _check_extremes(asked: _AskedRange) -> str:
+    found = asked.data["over"]
     if "stable" not in found:
         return Unchecked("an earlier version made it: attainment is not stated")
     along, over = (
-        next(a for a in slice.axes if a.name == found[key]["name"]) for key in ("along", "over")
+        next(a for a in asked.slice.axes if a.name == found[key]["name"])
+        for key in ("along", "over")
     )
     lines = SliceLines(
-        partial(_line, slice, found["along"], seed),
-        partial(_line, slice, found["over"], seed),
+        partial(asked.line, found["along"]),
+        partial(asked.line, found["over"]),
         along,
         over,
         found["stable"],
-        seed,
+        asked.seed,
     )
-    try:
-        return check_maxima(lines, maxima)
-    except NotKnown as reason:
-        return Unchecked(str(reason))
+    return check_maxima(lines, asked.maxima)

@@ -39,6 +39,10 @@ class Violation(Exception):
     """A claim of the result is false; the message holds the claim and a witness."""
 
 
+class NotKnown(ArithmeticError):
+    """What decides a claim was not found out: the claim is not checked."""
+
+
 @dataclass(frozen=True, slots=True)
 class Check:
     """One kind of claim.
@@ -248,13 +252,21 @@ def _is_decimal_of(text: str | None, ends: tuple[Fraction, Fraction]) -> bool:
     return all(abs(fraction_of(text) - end) <= unit for end in ends)
 
 
-PROVENANCE = Check(
-    "provenance",
-    "",
-    None,
-    "name, title, reference, versions, precision, timings: no claims about the regions",
+NO_CLAIMS = (
+    Check(
+        "plan",
+        "",
+        None,
+        "what it says of curves, unknowns and savings is no claim about the regions",
+    ),
+    Check(
+        "provenance",
+        "",
+        None,
+        "name, title, reference, versions, precision, timings: no claims about the regions",
+    ),
 )
-"""What no check is of."""
+"""The entries of a map that no check is of."""
 PARTS = 100
 """Of each check, for a bar that shows how far a verification is."""
 
@@ -308,6 +320,8 @@ def checked(
                 passed = None if isinstance(detail, Unchecked) else True
             except Violation as violation:
                 ended, passed, detail = "not reached", False, shown(str(violation))
+            except NotKnown as reason:
+                detail = str(reason)
             except LimitReached as limit:
                 ended, detail = f"not reached: {limit}", f"not finished: {limit}"
         checks.append(Check(name, method, passed, detail))

@@ -20,6 +20,9 @@ from typing import Any
 
 from flint import arb, arb_poly, ctx, fmpq, fmpz_poly
 
+from ptmcad.text.enclosure import AlgebraicNumber
+from ptmcad.text.flint_numbers import from_fraction
+
 Interval = tuple[fmpq, fmpq]
 Coefficients = tuple[int, ...]
 """Of a polynomial, the constant one first."""
@@ -151,6 +154,12 @@ def roots_within(p: fmpz_poly, low: fmpq, high: fmpq) -> int:
     if low == high:
         return int(p(low) == 0)
     return roots_between(p, low, high) + (p(low) == 0) + (p(high) == 0)
+
+
+def is_alone(number: AlgebraicNumber) -> bool:
+    """Whether a number is the only root of its polynomial between its bounds."""
+    ends = (from_fraction(end) for end in (number.low, number.high))
+    return roots_within(fmpz_poly(list(number.polynomial)), *ends) == 1
 
 
 def isolating_intervals(p: fmpz_poly, low: fmpq, high: fmpq) -> list[Interval]:

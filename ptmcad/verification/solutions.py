@@ -220,11 +220,13 @@ def check_counts(claims: Claims) -> str:
         if counts is None:
             raise Violation(f"{claims.meaning.solution} is degenerate at {where} in cell {n}")
         if not model.reals and not fibre.point.inequalities and _euler_sum(fibre, counts) != 0:
-            raise Violation(f"the Euler sum of {_text(counts)} at {where} in cell {n} is not zero")
+            raise Violation(
+                f"the Euler sum of {in_words(counts)} at {where} in cell {n} is not zero"
+            )
         stored = Counts(cell.total or 0, cell.stable, cell.index)
         if cell.total is None or stored != counts:
             raise Violation(
-                f"cell {n} is said to have {_text(stored)}; at {where} there are {_text(counts)}"
+                f"cell {n} is said to have {in_words(stored)}; at {where} there are {in_words(counts)}"
             )
         if kind.is_predicate and cell.further != (true := {name: fibre.number_held()}):
             raise Violation(
@@ -246,7 +248,8 @@ def _further(numbers: Mapping[str, int]) -> str:
     return ", ".join(f"{number} {name}" for name, number in numbers.items()) or "no further count"
 
 
-def _text(counts: Counts) -> str:
+def in_words(counts: Counts) -> str:
+    """Counts in a message."""
     parts = [f"{counts.total} {'solutions' if counts.index is None else 'equilibria'}"]
     if counts.stable is not None:
         parts.append(f"{counts.stable} stable")

@@ -108,15 +108,15 @@ def integrals_over(
     low, high = effort.heights
     middle, half = (left + right) / 2, (right - left) / 2
     height = branch.height(middle, low, high)
-    if height is None:
-        return [_known_by_edges(left, right, effort, True)]
-    found = _more_precisely(branch, middle, half, height, effort)
-    proved = fmpq(0) if found is None else found[1]
+    found = None if height is None else _more_precisely(branch, middle, half, height, effort)
     if found is None:
-        return [_known_by_edges(left, right, effort, True)]
-    sides = (left, middle - proved, min(run, 0) - 1), (middle + proved, right, max(run, 0) + 1)
-    rest = [_known_by_edges(a, b, effort, False)._replace(run=k) for a, b, k in sides if a < b]
-    return [PanelPart(middle - proved, middle + proved, found[0] - low * (2 * proved), True), *rest]
+        return _known_by_edges(left, right, effort, tried=True)
+    integral, proved = found
+    return [
+        PanelPart(middle - proved, middle + proved, integral - low * (2 * proved), True),
+        *_known_by_edges(left, middle - proved, effort, min(run, 0) - 1),
+        *_known_by_edges(middle + proved, right, effort, max(run, 0) + 1),
+    ]
 
 
 def _more_precisely(
@@ -140,10 +140,14 @@ def _more_precisely(
     raise BallsTooWide
 
 
-def _known_by_edges(left: fmpq, right: fmpq, effort: IntegralEffort, tried: bool) -> PanelPart:
-    """A part of which nothing is known but that it lies in the window."""
-    low, high = effort.heights
-    return PanelPart(left, right, arb(0).union(arb(high - low)) * (right - left), tried)
+def _known_by_edges(
+    one: fmpq, other: fmpq, effort: IntegralEffort, run: int = 0, *, tried: bool = False
+) -> list[PanelPart]:
+    """What is between two places, if anything is: nothing is known but that it lies in the window."""
+    if one == other:
+        return []
+    left, right, (low, high) = min(one, other), max(one, other), effort.heights
+    return [PanelPart(left, right, arb(0).union(arb(high - low)) * (right - left), tried, run)]
 
 
 _DEGREES = (2, 10)
@@ -262,11 +266,10 @@ def _beside(
                     total, length = found
                     end = at + length if far > at else at - length
                     integral = total + (place - low) * abs(end - near)
-                    inner = _between(end, far, effort, 1 if far > at else -1)
                     return [
                         PanelPart(min(near, end), max(near, end), integral, True),
-                        *inner,
-                        *_between(ends[0], near, effort),
+                        *_known_by_edges(end, far, effort, 1 if far > at else -1),
+                        *_known_by_edges(ends[0], near, effort),
                     ]
             reach = _cluster_radius(rows, multiplicity, arb(abs(far - at)))
             if reach is not None and abs(height - place) < reach < (high - low) / _LITTLE:
@@ -332,13 +335,6 @@ def _meeting_place(over: arb_poly, multiplicity: int, height: arb, away: fmpq) -
         v = (v - derivatives[-2](v) / derivatives[-1](v)).mid()
     reach = abs(height - v) ** multiplicity + arb(away) ** multiplicity
     return v if abs(over(v)) * _SPREAD < abs(derivatives[-1](v)) * reach else None
-
-
-def _between(one: fmpq, other: fmpq, effort: IntegralEffort, run: int = 0) -> list[PanelPart]:
-    """What is left between two places, if anything is."""
-    if one == other:
-        return []
-    return [_known_by_edges(min(one, other), max(one, other), effort, False)._replace(run=run)]
 
 
 def _from_point(

@@ -5,9 +5,9 @@ Guarantee: exact; `Sign.PROVED` and `Sign.WRONG` are theorems. `Sign.UNCHECKED` 
 function of both axes has a degree over `MAX_DEGREE`, or may be zero at an isolated point. That no
 real count feels a component is checked in `ptmcad.verification.norms`.
 
-Signs of coefficients on boxes settle most components; others are settled by root counts over a
-point in each interval that the curve's discriminant and edge values leave, and over its roots, where
-isolated points would be. A function changes sign in the open window where one of its irreducible
+Values in balls settle most components; others are settled by root counts over a point in each
+interval that the curve's discriminant and edge values leave, and over its roots, where isolated
+points would be. A function changes sign in the open window where one of its irreducible
 factors of odd multiplicity does. Nothing is shared with what the engines ask
 (`ptmcad.question.positivity`): no Bernstein coefficients, no Descartes' rule, another elimination.
 """
@@ -17,7 +17,7 @@ from __future__ import annotations
 from enum import Enum
 from itertools import product
 
-from flint import fmpq, fmpq_mpoly, fmpq_poly, fmpz_poly
+from flint import arb, arb_poly, ctx, fmpq, fmpq_mpoly, fmpz_poly
 
 from ptmcad.answer.regionmap import HARMLESS, NO_POINT, CriticalValue, Kind
 from ptmcad.text.expressions import Expression
@@ -33,11 +33,9 @@ from ptmcad.verification.rootcounts import (
     separated_points,
 )
 
-HALVINGS = 4
-"""Times that the window's sides are halved before a curve may be used although it has no point in
-the window.
-"""
-
+_HALVINGS = 5
+"""Times that the window's sides are halved before a curve's discriminant is asked."""
+_BITS = 256
 
 RUNS = "runs through the window"
 
@@ -47,6 +45,10 @@ def check_left_out(claims: Claims) -> str:
     result = claims.result
     number = 0
     for n, c in enumerate(result.components):
+        if c.kind is Kind.AUXILIARY:
+            raise Violation(
+                f"component {n} is auxiliary, but no saving was switched off that leaves it out"
+            )
         if not c.left_out or (c.left_out == HARMLESS and c.kind is Kind.INFINITY):
             continue
         if c.left_out != NO_POINT:
@@ -55,7 +57,7 @@ def check_left_out(claims: Claims) -> str:
             )
         number += 1
         curve = PlaneCurve.of(n, c.polynomial, result.base)
-        if plainly_outside(curve, claims):
+        if _plainly_outside(curve, claims):
             continue
         hit = point_in_window(curve, claims.base, claims.height)
         if hit is not None:
@@ -98,60 +100,24 @@ def point_in_window(
     return None
 
 
-def plainly_outside(curve: PlaneCurve, claims: Claims) -> bool:
-    """Whether few signs show that the curve has no point in the open window: those for which it has
-    to be left out.
-
-    A curve in one variable is decided by its roots; another one is asked for on the window and on
-    what halving both sides up to `HALVINGS` times makes of it, with constant terms then.
+def _plainly_outside(curve: PlaneCurve, claims: Claims) -> bool:
+    """Whether balls show that the curve has no point in the window: on the whole, or on the parts
+    into which up to `_HALVINGS` halvings of both sides divide it.
     """
-    if curve.degrees[1] == 0:
-        return not roots_between(curve.in_v[0], *claims.base)
-    if curve.degrees[0] == 0:
-        return not roots_between(curve.in_u[0], *claims.height)
-    rows = [fmpq_poly(row) for row in curve.in_v]
-    if _one_sign(rows, curve.degrees[0], claims.base, claims.height):
-        return True
     waiting = [(0, claims.base, claims.height)]
-    while waiting:
-        halved, (a, b), (c, d) = waiting.pop()
-        if _one_sign(rows, curve.degrees[0], (a, b), (c, d), strict=True):
-            continue
-        if halved == HALVINGS or curve.over(a)(c) * curve.over(b)(d) <= 0:
-            return False
-        u, v = (a + b) / 2, (c + d) / 2
-        waiting += [
-            (halved + 1, base, height) for base in ((a, u), (u, b)) for height in ((c, v), (v, d))
-        ]
+    with ctx.workprec(_BITS):
+        rows = [arb_poly(row) for row in curve.in_v]
+        while waiting:
+            halved, (a, b), (c, d) = waiting.pop()
+            column = arb_poly([row(arb(a).union(arb(b))) for row in rows])
+            if not column(arb(c).union(arb(d))).contains(0):
+                continue
+            if halved == _HALVINGS or curve.over(a)(c) * curve.over(b)(d) <= 0:
+                return False
+            u, v = (a + b) / 2, (c + d) / 2
+            halves = product(((a, u), (u, b)), ((c, v), (v, d)))
+            waiting += [(halved + 1, base, height) for base, height in halves]
     return True
-
-
-def _one_sign(
-    rows: list[fmpq_poly], degree: int, base: Interval, height: Interval, strict: bool = False
-) -> bool:
-    lines = [_on_half_line(row, degree, base) for row in rows]
-    signs = set()
-    for i in range(degree + 1):
-        column = _on_half_line(fmpq_poly([line[i] for line in lines]), len(rows) - 1, height)
-        signs |= {
-            (c > 0) - (c < 0) for c in (column[j] for j in range(len(rows))) if strict or c != 0
-        }
-        if len(signs) > 1:
-            return False
-    return 0 not in signs
-
-
-def _on_half_line(p: fmpq_poly, degree: int, ends: Interval) -> fmpq_poly:
-    """(1 + x)^degree p((low + high x)/(1 + x)): its values for x > 0 are those of p in the
-    interval, times a power.
-    """
-    low, high = ends
-    on_unit = p(fmpq_poly([low, high - low]))  # p(low + (high - low) z), z = x/(1 + x)
-    reversed_ = fmpq_poly(
-        [on_unit[degree - i] for i in range(degree + 1)]
-    )  # (1 + x)^degree q(x/(1+x)) = x^degree r(1 + 1/x)
-    shifted = reversed_(fmpq_poly([1, 1]))
-    return fmpq_poly([shifted[degree - i] for i in range(degree + 1)])
 
 
 MAX_DEGREE = 30

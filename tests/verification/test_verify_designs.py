@@ -17,8 +17,7 @@ from ptmcad.cli import run
 from ptmcad.text.enclosure import Enclosure
 from ptmcad.verification import verify_design
 from ptmcad.verification.designclaims import _check_bound, _check_boxes, _DesignLines
-from ptmcad.verification.parameterlines import NotKnown
-from ptmcad.verification.report import Unchecked, Violation
+from ptmcad.verification.report import NotKnown, Unchecked, Violation
 
 BALL: dict[str, Any] = {
     "name": "ball",

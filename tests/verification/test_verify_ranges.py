@@ -267,7 +267,7 @@ def enclosed_by_nothing(data: Any) -> None:
         ("line", no_change, "a change is missing"),
         ("line", a_change_of_four, "counts do not change as is said"),
         ("line", a_change_at_another_place, "counts cannot change near 0.5"),
-        ("beside", one_interval_where_two_meet, "are said to be at"),
+        ("beside", one_interval_where_two_meet, "where there are 0 solutions"),
         ("enclosed", nothing_enclosed, "nothing is said of M next to -0.5"),
         ("enclosed", an_enclosed_one_less, "nothing is said of M next to -0.418"),
         ("enclosed", enclosed_ones_turned, "overlap, or are not in their order"),
