@@ -19,8 +19,7 @@ from typing import Any, NamedTuple
 
 from flint import arb, ctx, fmpq
 
-from ptmcad.algebra.fibre_points import RealPoint, value_at
-from ptmcad.algebra.number_field import FieldElement
+from ptmcad.algebra.number_field import FieldElement, RealPoint, value_at
 from ptmcad.algebra.polynomials import Values
 from ptmcad.answer.poses import Pose, springs_of
 from ptmcad.exact.point_system import PointSystem

@@ -3,7 +3,7 @@ integral.
 
 Guarantee: the integral lies in the enclosure, whichever way it was found: exactly, where the curve
 is a polynomial's graph, by the branch's Taylor series (`algebra.curve_branches`), by its Puiseux series
-beside a singular point (`algebra.puiseux`), between arcs (`algebra.arcs`), between horizontals, or
+beside a singular point (`algebra.puiseux`), between arcs (`algebra.chords`), between horizontals, or
 between the window's edges.
 """
 
@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 from flint import arb, ctx, fmpq
 
-from ptmcad.algebra.arcs import arc_integral, graph_integral
+from ptmcad.algebra.chords import arc_integral, graph_integral
 from ptmcad.algebra.curve_branches import Integral, TooFewBits, branch_integral
 from ptmcad.algebra.real_roots import Interval, RealRoot, avoids, order, refine
 from ptmcad.exact.cad.projection import FibredCurve

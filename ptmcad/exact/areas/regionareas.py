@@ -16,7 +16,7 @@ from math import prod
 
 from flint import fmpq
 
-from ptmcad.algebra.arcs import on_graph
+from ptmcad.algebra.chords import on_graph
 from ptmcad.algebra.polynomials import RationalUnivariate, UnivariatePolynomial
 from ptmcad.algebra.real_roots import (
     RealRoot,

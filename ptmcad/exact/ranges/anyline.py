@@ -23,7 +23,7 @@ from typing import NamedTuple
 from flint import fmpq
 
 from ptmcad.algebra.algebraic_numbers import algebraic_number, in_order
-from ptmcad.algebra.fibre_points import RealPoint, points, value_at
+from ptmcad.algebra.number_field import RealPoint, points, value_at
 from ptmcad.algebra.plane_determinants import determinant
 from ptmcad.algebra.polynomials import (
     ONE,
