@@ -57,7 +57,7 @@ from ptmcad.exact.statics import is_positive
 from ptmcad.question.line import line_of
 from ptmcad.question.slice import Axis, Slice
 from ptmcad.text.enclosure import AlgebraicNumber
-from ptmcad.text.flint_numbers import from_fraction, interval_of, simplest_between, to_fraction
+from ptmcad.text.flint_numbers import from_fraction, interval_of, simplest_between
 
 MAX_DIMENSION = 40
 """Complex solutions, with multiplicity and at all conjugate values, up to which they are
@@ -149,8 +149,6 @@ def lines_of(slice: Slice, along: str, found: RangeStrips) -> list[SpecialLine]:
 
 def number_at(end: BaseEnd) -> End:
     """Where an end of strips is."""
-    if end.root is None:
-        return to_fraction(end.value)
     number = algebraic_number(end.root)
     return number if number.exact is None else number.exact
 

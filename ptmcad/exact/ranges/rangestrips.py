@@ -197,8 +197,6 @@ def end_interval(end: BaseEnd, width: fmpq) -> Interval:
     """An interval that holds an end of a base interval: of length zero at a rational one, else
     within ``width``.
     """
-    if end.root is None:
-        return end.value, end.value
     if end.root.polynomial.degree() == 1:
         value = fmpq(-end.root.polynomial[0], end.root.polynomial[1])
         return value, value

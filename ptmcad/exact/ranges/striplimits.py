@@ -15,7 +15,7 @@ from flint import arb, fmpq
 from ptmcad.algebra.algebraic_numbers import fibre_roots, refined, root_of
 from ptmcad.algebra.chords import side_of_chord, slope_over, tangent_resultant
 from ptmcad.algebra.polynomials import PLANE, UnivariatePolynomial
-from ptmcad.algebra.real_roots import Interval, RealRoot, isolate, refine, sign
+from ptmcad.algebra.real_roots import Interval, isolate, refine, sign
 from ptmcad.algebra.resultants import resultant
 from ptmcad.answer.intervals import End
 from ptmcad.exact.cad.stacks import BaseEnd
@@ -51,7 +51,6 @@ def limit(branch: RangeEnd, strip: RangeStrip, end: BaseEnd, width: fmpq) -> End
     if at[0] == at[1]:
         fibre = branch.curve.polynomial_over(at[0])
     else:
-        assert end.root is not None
         fibre = resultant(
             branch.curve.in_u, [UnivariatePolynomial([c]) for c in end.root.polynomial.coeffs()]
         )
@@ -124,7 +123,7 @@ def _course(
             turns = tangent_resultant(p, (int(slope.p), int(slope.q)))
         except ArithmeticError:  # the curve is a line of this slope
             return abs(run), 0
-        own = (end.root or RealRoot.of(end.value)).polynomial
+        own = end.root.polynomial
         if not divmod(turns, own)[1]:
             turns = turns // own
         around = (at[0], strip.sample) if run > 0 else (strip.sample, at[1])

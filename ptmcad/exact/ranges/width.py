@@ -144,8 +144,8 @@ class _WidthSearch:
         self, end: BaseEnd, width: Interval, ends: Ends | None, attained: bool | None
     ) -> None:
         """A candidate at an end of a strip."""
-        place = Place.EDGE if end.root is None else Place.CRITICAL
-        critical = None if end.root is None else algebraic_number(end.root)
+        place = Place.EDGE if end.critical is None else Place.CRITICAL
+        critical = None if end.critical is None else algebraic_number(end.root)
         at = end_interval(end, _END_WIDTH)
         self.candidates.append(_Candidate(place, at, width, critical, ends, attained))
 
@@ -258,7 +258,7 @@ class _WidthSearch:
                 width, strip = (self.known, -negative), piece.strip
                 ends = [strip.left] * piece.open_left + [strip.right] * piece.open_right
                 critical = next(
-                    (algebraic_number(end.root) for end in ends if end.root is not None), None
+                    (algebraic_number(end.root) for end in ends if end.critical is not None), None
                 )
                 # a continuous function on a closed interval, but for ends at which the line has
                 # another width
