@@ -23,7 +23,7 @@ from typing import NamedTuple
 from flint import fmpq
 
 from ptmcad.algebra.algebraic_numbers import algebraic_number, in_order
-from ptmcad.algebra.number_field import RealPoint, points, value_at
+from ptmcad.algebra.number_field import points, value_at
 from ptmcad.algebra.plane_determinants import determinant
 from ptmcad.algebra.polynomials import (
     ONE,
@@ -53,7 +53,7 @@ from ptmcad.exact.models.system import ALONG, SliceSystem, lifted, on_slice, sat
 from ptmcad.exact.point_system import DegeneratePoint, point_system
 from ptmcad.exact.ranges.exactline import END_WIDTH, intervals, runs
 from ptmcad.exact.ranges.rangestrips import RangeStrips
-from ptmcad.exact.statics import is_positive
+from ptmcad.exact.statics import sign_of
 from ptmcad.question.line import line_of
 from ptmcad.question.slice import Axis, Slice
 from ptmcad.text.enclosure import AlgebraicNumber
@@ -265,8 +265,8 @@ def _counting(
             return None
         stable = open_ones = 0
         for solution in points(point.algebra, None)[0]:
-            if all(_sign(solution, p) > 0 for p in (*point.inequalities, *within)):
-                signs = [_sign(solution, p) for p in point.stability]
+            if all(sign_of(value_at(solution, p)) > 0 for p in (*point.inequalities, *within)):
+                signs = [sign_of(value_at(solution, p)) for p in point.stability]
                 stable += all(s > 0 for s in signs)
                 # a flat minimum, or a flat loop; of a system the conditions are what is called
                 # stable
@@ -274,11 +274,6 @@ def _counting(
         return stable, stable + open_ones
 
     return count_at
-
-
-def _sign(solution: RealPoint, p: RationalPolynomial) -> int:
-    value = value_at(solution, p)
-    return 0 if value.is_zero else 1 if is_positive(value) else -1
 
 
 def _spans(ends: Sequence[End], here: Sequence[bool]) -> tuple[Span, ...]:

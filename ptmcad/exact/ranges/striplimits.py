@@ -20,6 +20,7 @@ from ptmcad.algebra.resultants import resultant
 from ptmcad.answer.intervals import End
 from ptmcad.exact.cad.stacks import BaseEnd
 from ptmcad.exact.ranges.rangestrips import (
+    RANGE_END_WIDTH,
     RangeEnd,
     RangeStrip,
     at_abscissa,
@@ -38,7 +39,7 @@ def ends_of(end: End) -> Interval:
     return interval_of(AlgebraicNumber.of(end))
 
 
-def limit(branch: RangeEnd, strip: RangeStrip, end: BaseEnd, width: fmpq) -> End | None:
+def limit(branch: RangeEnd, strip: RangeStrip, end: BaseEnd) -> End | None:
     """The limit of a branch at an end of its strip; None when it could not be separated from other
     points.
     """
@@ -46,7 +47,7 @@ def limit(branch: RangeEnd, strip: RangeStrip, end: BaseEnd, width: fmpq) -> End
         return to_fraction(branch.edge)
     margin = strip.fibre[1] - strip.fibre[0]
     wide = (strip.fibre[0] - margin, strip.fibre[1] + margin)
-    at = end_interval(end, width)
+    at = end_interval(end)
     distance = strip.sample - at[0]
     if at[0] == at[1]:
         fibre = branch.curve.polynomial_over(at[0])
@@ -63,25 +64,25 @@ def limit(branch: RangeEnd, strip: RangeStrip, end: BaseEnd, width: fmpq) -> End
         if top is not None and bottom is not None:
             roots = fibre_roots(fibre, bottom, top)
             if len(roots) == 1:
-                return refined(roots[0], to_fraction(width))
+                return refined(roots[0], to_fraction(RANGE_END_WIDTH))
         distance = distance / 4
     return None
 
 
-def limits(strip: RangeStrip, end: BaseEnd, width: fmpq) -> Ends | None:
+def limits(strip: RangeStrip, end: BaseEnd) -> Ends | None:
     """Those of both branches."""
-    low, high = (limit(branch, strip, end, width) for branch in strip.branches)
+    low, high = (limit(branch, strip, end) for branch in strip.branches)
     return None if low is None or high is None else (low, high)
 
 
-def narrowing_length(strip: RangeStrip, end: BaseEnd, width: fmpq) -> fmpq | None:
+def narrowing_length(strip: RangeStrip, end: BaseEnd) -> fmpq | None:
     """A length from an end within which the range gets narrower away from it; None if not proved.
 
     For some slope s, v - s u of the lower branch does not fall away from the end, that of the upper
     one does not rise, and one of them moves: no point of either has a tangent of this slope, but
     over the end itself.
     """
-    at = end_interval(end, width)
+    at = end_interval(end)
     slopes = [fmpq(0)]
     for bits in (6, 20):
         run = (strip.sample - at[0]) / 2**bits
