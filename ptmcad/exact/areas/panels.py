@@ -283,16 +283,11 @@ def _smooth(border: Border, over: Interval, effort: PanelEffort, allowed: fmpq) 
         return _more_precisely(by_series) if obstacle else series
     arcs = Integral(between, fmpq(1), 1.0, False)
     if obstacle and between.rad() > arb(allowed) * 2**_BITS_BY_HALVES:
-        return _or_else(arcs, lambda: _more_precisely(by_series))
+        try:
+            return _more_precisely(by_series) or arcs
+        except TooFewBits:
+            return arcs
     return arcs if series is None or between.rad() < arb(allowed) else series
-
-
-def _or_else(arcs: Integral, enclose: Callable[[], Integral | None]) -> Integral:
-    """The enclosure, or that by arcs where there is none."""
-    try:
-        return enclose() or arcs
-    except TooFewBits:
-        return arcs
 
 
 def _sharper(enclose: Callable[[], Integral | None], allowed: fmpq) -> Integral | None:
