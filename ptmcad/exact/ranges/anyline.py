@@ -22,7 +22,6 @@ from typing import NamedTuple
 
 from flint import fmpq
 
-from ptmcad.algebra.algebraic_numbers import algebraic_number, in_order
 from ptmcad.algebra.number_field import points, value_at
 from ptmcad.algebra.plane_determinants import determinant
 from ptmcad.algebra.polynomials import (
@@ -42,7 +41,7 @@ from ptmcad.algebra.quotient_algebra import (
     multiplication_denominator,
     trace_form,
 )
-from ptmcad.algebra.real_roots import gaps, isolate
+from ptmcad.algebra.real_roots import algebraic_number, gaps, in_order, isolate
 from ptmcad.algebra.trigonometric_ring import RationalPolynomial
 from ptmcad.answer.intervals import End, Span
 from ptmcad.errors import ConfigError, DegenerateSliceError, HypothesisError, InfiniteSolutionsError

@@ -12,10 +12,9 @@ from fractions import Fraction
 
 from flint import arb, fmpq
 
-from ptmcad.algebra.algebraic_numbers import fibre_roots, refined, root_of
 from ptmcad.algebra.chords import side_of_chord, slope_over, tangent_resultant
 from ptmcad.algebra.polynomials import PLANE, UnivariatePolynomial
-from ptmcad.algebra.real_roots import Interval, isolate, refine, sign
+from ptmcad.algebra.real_roots import Interval, fibre_roots, isolate, refine, refined, root_of, sign
 from ptmcad.algebra.resultants import resultant
 from ptmcad.answer.intervals import End
 from ptmcad.exact.cad.stacks import BaseEnd

@@ -37,8 +37,7 @@ from typing import NamedTuple
 
 from flint import arb, fmpq
 
-from ptmcad.algebra.algebraic_numbers import algebraic_number, compare
-from ptmcad.algebra.real_roots import Interval
+from ptmcad.algebra.real_roots import Interval, algebraic_number, compare
 from ptmcad.answer.intervals import End, Span
 from ptmcad.answer.widths import Maximum, Place
 from ptmcad.exact.cad.stacks import BaseEnd
