@@ -2,7 +2,7 @@
 or msolve.
 
 Guarantee: exact, whatever msolve answers. Its basis is used after a proof that it is one of the
-ideal of the equations (`ptmcad.algebra.proved`); else a `PtmcadWarning` says what was wrong, and
+ideal of the equations (`ptmcad.algebra.msolve`); else a `PtmcadWarning` says what was wrong, and
 the basis is computed as if msolve were not there. What asks msolve is loaded when it is asked.
 """
 
@@ -73,7 +73,6 @@ def quotient(
     except LimitReached:
         largest = None if most is None else most.by_msolve
     from ptmcad.algebra import msolve
-    from ptmcad.algebra.proved import quotient_by_msolve
 
     if msolve.program() is None:
         what = "the basis of the equations at the point grows beyond what ptmcad computes quickly"
@@ -82,7 +81,7 @@ def quotient(
         warnings.warn(f"{what}, and may take very long; {MISSING}", PtmcadWarning, stacklevel=2)
         return own_quotient(equations, unknowns)
     try:
-        return quotient_by_msolve(equations, unknowns, SECONDS, largest)
+        return msolve.quotient_by_msolve(equations, unknowns, SECONDS, largest)
     except msolve.MsolveError as error:
         warnings.warn(f"{error}; its basis is not used", PtmcadWarning, stacklevel=2)
     if most is not None:

@@ -1,20 +1,26 @@
 """Branches of a plane curve near a point and over a short interval: on which side of a line, how
-steep, and where they have a given direction.
+steep, where they have a given direction, and between which parabolic arcs.
 
 Guarantee: answers of `side_of_chord` are proved; enclosures of slopes contain them for every
-abscissa of the panel; None means not proved. No point of the curve off the real roots of
-`tangent_resultant` has the direction.
+abscissa of the panel, and those of integrals the integral; None means not proved. No point of the
+curve off the real roots of `tangent_resultant` has the direction.
 
 A chord starts at a point (u0, v0) of the curve p = 0, u0 rational, v0 algebraic: v = v0 + s
 (u - u0). The coefficients of p(u0 + t, v0 + s t) by powers of t are polynomials in v0; which of
 them vanish is decided by its minimal polynomial. Divided by the power of t that is common to them,
 the polynomial has a proved sign on [0, d] when a ball evaluation excludes zero on each piece of it.
 So the branch does not meet the chord there, even if the start is a singular point.
+
+Over a panel without turning points a branch is a continuous graph. If it runs between z - d and
+z + d at one place of the panel, and the curve meets neither of these two arcs over the panel, then
+it runs between them everywhere. Nothing is asked of the other branches: many may lie in the same
+tube, at any distance from each other, where a Taylor series of one of them would need hundreds of
+bits to distinguish them.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 from flint import (
     Ordering,
@@ -28,13 +34,28 @@ from flint import (
 )
 
 from ptmcad.algebra.polynomials import Coefficient, coefficients_in, local_coefficients
-from ptmcad.algebra.real_roots import RealRoot, avoids, refine, squarefree_part
+from ptmcad.algebra.real_roots import (
+    Interval,
+    RealRoot,
+    avoids,
+    has_root_between,
+    refine,
+    squarefree_part,
+)
 from ptmcad.algebra.resultants import resultant
 
 _TWO: fmpq_mpoly_ctx = fmpq_mpoly_ctx.get(("v", "t"), Ordering.degrevlex)
 _DEPTH = 12
 """Halvings of the interval in which a sign is proved."""
 _BITS = 256
+NODES = (fmpq(-7, 8), fmpq(0), fmpq(7, 8))
+"""Where the arc meets the branch, on the panel as [-1, 1]."""
+PROBE = fmpq(-1, 2)
+"""Where its distance from the branch is measured, which shows how wide the tube has to be about."""
+ARC_BITS = 7
+"""The branch is isolated this much finer than the height is wanted."""
+TUBES = (2, 8, 64)
+"""Widths of the tubes that are tried, in units of that distance."""
 
 
 def side_of_chord(
@@ -164,3 +185,79 @@ def tangent_resultant(p: Coefficient, direction: Direction) -> fmpz_poly:
     if not eliminated:
         raise ArithmeticError("the curve contains a line of the direction, or a multiple component")
     return squarefree_part(eliminated)
+
+
+def arc_integral(
+    in_v: Sequence[fmpz_poly],
+    branch: Callable[[fmpq], RealRoot],
+    middle: fmpq,
+    radius: fmpq,
+    fibre: Interval,
+    wanted: fmpq,
+) -> arb | None:
+    """An enclosure of the integral of a branch over a panel.
+
+    Parameters
+    ----------
+    in_v : coefficients in Z[u] of p as a polynomial in v.
+    branch : the branch's value at a rational abscissa, isolated.
+    middle, radius : of the panel, over whose interior no branches of the curve meet.
+    wanted : half the width of a tube that would do; positive.
+
+    Returns
+    -------
+    The enclosure, or None when no tube of those tried was proved.
+    """
+    unit = fmpq(2) ** (
+        int(wanted.p).bit_length() - int(wanted.q).bit_length() - ARC_BITS
+    )  # short, as all starts from it
+    left, here, right = (_rounded(branch(middle + radius * x), unit) for x in NODES)
+    slope = (right - left) / (NODES[2] - NODES[0])
+    curvature = (left + right - 2 * here) / (2 * NODES[2] ** 2)
+    arc = fmpq_poly([here, slope, curvature])
+    miss = abs(_rounded(branch(middle + radius * PROBE), unit) - arc(PROBE)) + unit
+    along = fmpq_poly([middle, radius])
+    rows = [fmpq_poly(c)(along) for c in in_v]
+    for tube in TUBES:
+        distance = tube * miss
+        if distance * 16 > fibre[1] - fibre[0]:
+            return None
+        if not any(
+            has_root_between(on_graph(rows, arc + end), fmpq(-1), fmpq(1))
+            for end in (-distance, distance)
+        ):
+            mean = here + curvature / 3
+            return (arb(mean) + arb(distance) * arb(0, 1)) * arb(2 * radius)
+    return None
+
+
+def _rounded(root: RealRoot, unit: fmpq) -> fmpq:
+    """A multiple of the unit within two units of the root."""
+    return unit * (refine(root, unit).middle / unit).floor()
+
+
+def on_graph(rows: Sequence[fmpz_poly | fmpq_poly], graph: fmpq_poly) -> fmpz_poly:
+    """A positive multiple of p(u, graph(u)); zero where the graph is a part of the curve.
+
+    Parameters
+    ----------
+    rows : coefficients of p as a polynomial in v.
+    """
+    total = fmpq_poly([0])
+    for row in reversed(rows):
+        total = total * graph + row
+    return total.numer()
+
+
+def graph_integral(in_v: Sequence[fmpz_poly], low: fmpq, high: fmpq) -> fmpq | None:
+    """The integral of v over [low, high] on the curve p(u, v) = 0; None where it is not the graph
+    of a polynomial in u.
+
+    Parameters
+    ----------
+    in_v : coefficients in Z[u] of p as a polynomial in v.
+    """
+    if len(in_v) != 2 or in_v[1].degree() > 0:
+        return None
+    whole = fmpq_poly(-in_v[0]).integral()
+    return (whole(high) - whole(low)) / fmpq(in_v[1][0])

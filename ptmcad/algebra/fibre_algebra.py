@@ -56,6 +56,16 @@ class FibreAlgebra(NamedTuple):
         """The number of complex solutions counted with multiplicity."""
         return len(self.basis)
 
+    @property
+    def one(self) -> fmpq_mat:
+        """Multiplication by 1."""
+        size = range(self.dimension)
+        return fmpq_mat(len(size), len(size), [fmpq(int(i == j)) for i in size for j in size])
+
+    def powers(self) -> Callable[[Monomial], fmpq_mat]:
+        """Multiplication by a monomial in the unknowns; each is computed once."""
+        return powers_of(self.multiplication, self.one)
+
 
 class WorkLimit(NamedTuple):
     """How much work a quotient may be, whatever the machine: about a second where each is as large
@@ -177,15 +187,8 @@ def _normal_forms(basis: Sequence[Monomial], rules: Rules) -> dict[Monomial, lis
 def evaluate(algebra: FibreAlgebra, p: RationalPolynomial) -> fmpq_mat:
     """The matrix of multiplication by a polynomial in the unknowns, or in the first of them."""
     size = algebra.dimension
-    power = powers_of(algebra.multiplication, scalar_matrix(size, fmpq(1)))
+    power = algebra.powers()
     return sum((power(monomial) * c for monomial, c in p.items()), fmpq_mat(size, size))
-
-
-def scalar_matrix(size: int, value: fmpq) -> fmpq_mat:
-    """A multiple of the identity."""
-    return fmpq_mat(
-        size, size, [value if i == j else fmpq(0) for i in range(size) for j in range(size)]
-    )
 
 
 class UnivariateRepresentation(NamedTuple):
@@ -243,7 +246,7 @@ def univariate_representation(
         radical = characteristic // characteristic.gcd(characteristic.derivative())
         degree = radical.degree()
         if degree < size and different is None:
-            different = hermite_matrix(algebra, scalar_matrix(size, fmpq(1))).rank()
+            different = hermite_matrix(algebra, algebra.one).rank()
         if degree not in (size, different):
             continue
         return _represented(
@@ -311,7 +314,7 @@ def _basis_traces(algebra: FibreAlgebra) -> tuple[fmpz_mat, fmpz]:
     denominator.
     """
     size = algebra.dimension
-    power = powers_of(algebra.multiplication, scalar_matrix(size, fmpq(1)))
+    power = algebra.powers()
     traces = [sum(power(m).entries()[:: size + 1], fmpq(0)) for m in algebra.basis]
     row, denominator = fmpq_mat(1, size, traces).numer_denom()
     return row, denominator
@@ -398,7 +401,7 @@ def hermite_matrix(algebra: FibreAlgebra, weight: fmpq_mat) -> fmpq_mat:
     size = algebra.dimension
     row, denominator = _basis_traces(algebra)
     # column j of a multiplication is the normal form of its element times b_j
-    power = powers_of(algebra.multiplication, scalar_matrix(size, fmpq(1)))
+    power = algebra.powers()
     products = [power(m).transpose() for m in algebra.basis]
     traces = fmpq_mat(row).transpose() / denominator
     traces_of_products = fmpq_mat(size, size, [t for m in products for t in (m * traces).entries()])

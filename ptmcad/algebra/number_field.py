@@ -1,27 +1,35 @@
-"""Real number fields Q(a), a being a real root of an irreducible polynomial, their elements, and
-rational roots of polynomials over them.
+"""Real number fields Q(a), a being a real root of an irreducible polynomial, their elements, rational
+roots of polynomials over them, and the real points of a fibre, whose unknowns are such elements.
 
 Guarantee: exact. Whether an element is zero, or rational, is decided by its residue and never by an
-enclosure; `ball` encloses its value, as narrowly as the precision allows.
+enclosure; `ball` encloses its value, as narrowly as the precision allows. Each real solution of a
+fibre is there once, also where it is multiple; its multiplicity is the dimension of the local
+algebra.
 
 Residues have numbers many times as long as those that they come from: with parameters of forty
 digits, three thousand bits become thirty thousand. So an element is kept as the expression that it
 was made by, which is evaluated in three ways. Most are found to be irrational in the residues
 modulo a prime, whose numbers are short, and their enclosures are those of the expression; a residue
 over Q is computed when the prime does not tell.
+
+Reference: Rouillier, Solving zero-dimensional systems through the rational univariate
+representation, AAECC 9 (1999).
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from functools import cached_property
-from typing import Any, TypeVar
+from functools import cached_property, reduce
+from typing import Any
 
 from flint import arb, arb_poly, ctx, fmpq, fmpq_poly, fmpz_poly, nmod, nmod_poly
 
-from ptmcad.algebra.real_roots import RealRoot, refine
+from ptmcad.algebra.descartes import root_bound
+from ptmcad.algebra.fibre_algebra import FibreAlgebra, univariate_representation
+from ptmcad.algebra.membership import RationalPolynomial
+from ptmcad.algebra.real_roots import RealRoot, is_root_of, isolate, refine
 from ptmcad.text.flint_numbers import to_fraction
 
 PRIME = 2**61 - 1
@@ -167,15 +175,6 @@ class FieldElement:
         ball: arb = at[self.expression]
         return ball
 
-    def coefficients(self) -> tuple[fmpq, ...]:
-        """The residue's coefficients, as many as the field's degree, constant first."""
-        return tuple(fmpq(self.residue[k]) for k in range(self.field.modulus.degree))
-
-    def image_coefficients(self) -> tuple[nmod, ...] | None:
-        """Those of the residue modulo `PRIME`, where there is one."""
-        image = self.image
-        return None if image is None else tuple(image[k] for k in range(self.field.modulus.degree))
-
     def __add__(self, other: FieldElement) -> FieldElement:
         a, b = self.expression, other.expression
         return FieldElement(self.field, lambda ring: ring[a] + ring[b])
@@ -210,33 +209,6 @@ class FieldElement:
         return self * self.field.constant(factor)
 
 
-def polynomial_at(
-    field: RealField, at: Sequence[FieldElement], p: Mapping[tuple[int, ...], fmpq]
-) -> FieldElement:
-    """The value of a polynomial, in all of them or in the first, at elements of a field.
-
-    Parameters
-    ----------
-    p : exponents to coefficients.
-    """
-    parts = [element.expression for element in at]
-
-    def value(ring: RingEvaluation) -> Any:
-        total = ring.embed(fmpq_poly([0]))
-        for monomial, c in p.items():
-            term = ring.embed(fmpq_poly([c]))
-            for part, exponent in zip(parts, monomial, strict=False):
-                for _ in range(exponent):
-                    term = ring.reduce(term * ring[part])
-            total += term
-        return total
-
-    return FieldElement(field, value)
-
-
-_Polynomial = TypeVar("_Polynomial", fmpq_poly, nmod_poly)
-
-
 def rational_roots(lower: Sequence[FieldElement]) -> Iterator[tuple[Fraction, int]]:
     """The rational roots of a polynomial with leading coefficient 1, with multiplicities.
 
@@ -248,29 +220,98 @@ def rational_roots(lower: Sequence[FieldElement]) -> Iterator[tuple[Fraction, in
     ----------
     lower : the other coefficients, from the constant one on.
     """
-    images = [total.image_coefficients() for total in lower]
-    known = [image for image in images if image is not None]
-    if len(known) == len(images) and known:
-        p = known[0][0].modulus()
-        columns = [
-            nmod_poly([int(image[j]) for image in known] + [int(j == 0)], p)
-            for j in range(len(known[0]))
-        ]
-        if _common(columns).degree() < 1:
-            return
-    rows = [total.coefficients() for total in lower]
-    exact = (
-        [fmpq_poly([row[j] for row in rows] + [fmpq(int(j == 0))]) for j in range(len(rows[0]))]
-        if rows
-        else []
-    )
-    for factor, multiplicity in _common(exact).numer().factor()[1] if exact else []:
+    if not lower:
+        return
+    degree, images = lower[0].field.modulus.degree, [total.image for total in lower]
+    if (
+        None not in images
+        and _common(images, degree, lambda row: nmod_poly([int(c) for c in row], PRIME)).degree()
+        < 1
+    ):
+        return
+    exact = _common([total.residue for total in lower], degree, fmpq_poly)
+    for factor, multiplicity in exact.numer().factor()[1]:
         if factor.degree() == 1:
             yield Fraction(-int(factor[0]), int(factor[1])), multiplicity
 
 
-def _common(polynomials: Sequence[_Polynomial]) -> _Polynomial:
-    total = polynomials[0]
-    for p in polynomials[1:]:
-        total = total.gcd(p)
-    return total
+def _common(lower: Sequence[Any], degree: int, polynomial: Callable[[list[Any]], Any]) -> Any:
+    """The greatest common divisor of the polynomials that belong to the powers of the generator.
+
+    Parameters
+    ----------
+    lower : residues; those of the leading coefficient, 1, are added.
+    degree : of the field.
+    """
+    columns = (polynomial([*(p[j] for p in lower), int(j == 0)]) for j in range(degree))
+    return reduce(lambda a, b: a.gcd(b), columns)
+
+
+@dataclass(frozen=True, slots=True)
+class RealPoint:
+    """A real solution: the unknowns as elements of a real field, and the multiplicity."""
+
+    field: RealField
+    unknowns: tuple[FieldElement, ...]
+    multiplicity: int
+
+
+def points(algebra: FibreAlgebra, bound: int | None = 1) -> tuple[list[RealPoint], int]:
+    """The real points of a fibre, and the number of different complex ones.
+
+    The real ones stand in the order of a form that separates all of them.
+
+    Parameters
+    ----------
+    bound : of the unknowns at all real points, where one is known; it bounds the search.
+    """
+    separated = univariate_representation(algebra, multiple=True)
+    if separated is None:
+        raise ArithmeticError("no form of the list separates the points of a fibre")
+    radical, form = separated.minimal, separated.form
+    factors = [
+        (factor, int(multiplicity)) for factor, multiplicity in separated.characteristic.factor()[1]
+    ]
+    numerators = [separated.slope, *separated.coordinates]
+    limit = root_bound(radical) if bound is None else fmpq(bound * sum(form) + 1)
+    coordinates: dict[int, tuple[Modulus, list[Expression]]] = {}
+    found = []
+    for root in isolate(radical, -limit, limit):
+        number = next(n for n, (factor, _) in enumerate(factors) if is_root_of(factor, root))
+        factor, multiplicity = factors[number]
+        interval = RealRoot(factor, root.low, root.high)
+        if number not in coordinates:
+            modulus = Modulus(factor)
+            coordinates[number] = modulus, _coordinates(RealField(modulus, interval), numerators)
+        modulus, residues = coordinates[number]
+        field = RealField(modulus, interval)
+        found.append(
+            RealPoint(field, tuple(FieldElement(field, r) for r in residues), multiplicity)
+        )
+    return found, int(radical.degree())
+
+
+def value_at(point: RealPoint, p: RationalPolynomial) -> FieldElement:
+    """The value of a polynomial in the unknowns, or in the first of them."""
+    parts = [element.expression for element in point.unknowns]
+
+    def value(ring: RingEvaluation) -> Any:
+        total = ring.embed(fmpq_poly([0]))
+        for monomial, c in p.items():
+            term = ring.embed(fmpq_poly([c]))
+            for part, exponent in zip(parts, monomial, strict=False):
+                for _ in range(exponent):
+                    term = ring.reduce(term * ring[part])
+            total += term
+        return total
+
+    return FieldElement(point.field, value)
+
+
+def _coordinates(field: RealField, numerators: Sequence[fmpq_poly]) -> list[Expression]:
+    """The unknowns at the points of one factor: quotients of the trace polynomials by the first of
+    them.
+    """
+    first, *others = map(field.element, numerators)
+    inverse = first.inverse()  # it vanishes at no point of the fibre
+    return [(other * inverse).expression for other in others]

@@ -61,21 +61,15 @@ def determinant(rows: list[list[Ratio]]) -> Ratio:
         scale = lcm(d for _, d in row)
         matrix.append([n * (scale / d) for n, d in row])
         denominator = denominator * scale
-    for j in range(len(matrix)):
-        common = common_factor(line[j] for line in matrix)
-        if common.is_zero():
-            return zero, one
-        if not common.is_one():
-            numerator = numerator * common
-            for line in matrix:
-                line[j] = line[j] / common
-    for i, line in enumerate(matrix):
-        common = common_factor(line)
-        if common.is_zero():
-            return zero, one
-        if not common.is_one():
-            numerator = numerator * common
-            matrix[i] = [c / common for c in line]
+    for _ in range(2):  # the columns, then the rows
+        matrix = [list(line) for line in zip(*matrix, strict=True)]
+        for i, line in enumerate(matrix):
+            common = common_factor(line)
+            if common.is_zero():
+                return zero, one
+            if not common.is_one():
+                numerator = numerator * common
+                matrix[i] = [c / common for c in line]
     return ratio(numerator * _primitive_determinant(matrix), denominator)
 
 

@@ -11,8 +11,8 @@ References: Lazard & Rouillier, J. Symb. Comp. 42 (2007); Le & Safey El Din, arX
 
 from __future__ import annotations
 
-from collections.abc import Collection, Container, Sequence
-from functools import lru_cache
+from collections.abc import Collection, Container, Iterable, Sequence
+from functools import lru_cache, reduce
 from operator import add
 from typing import NamedTuple
 
@@ -288,20 +288,22 @@ def trace_form(algebra: QuotientAlgebra) -> list[list[Ratio]]:
     """The Hermite matrix trace(b_i b_j); its determinant vanishes where solutions coincide."""
     basis = algebra.basis
     products = [[normal_form(algebra, tuple(map(add, a, b))) for b in basis] for a in basis]
-    traces = []
-    for row in products:
-        total: Ratio = (algebra.zero, algebra.one)
-        for j, (numerators, denominator) in enumerate(row):
-            total = add_ratios(total, ratio(numerators[j], denominator))
-        traces.append(total)
-    matrix = []
-    for row in products:
-        entries = []
-        for numerators, denominator in row:
-            total = (algebra.zero, algebra.one)
-            for c, (trace, trace_denominator) in zip(numerators, traces, strict=True):
-                if not c.is_zero():
-                    total = add_ratios(total, ratio(c * trace, denominator * trace_denominator))
-            entries.append(total)
-        matrix.append(entries)
-    return matrix
+
+    def total(terms: Iterable[Ratio]) -> Ratio:
+        return reduce(add_ratios, terms, (algebra.zero, algebra.one))
+
+    traces = [
+        total(ratio(numerators[j], denominator) for j, (numerators, denominator) in enumerate(row))
+        for row in products
+    ]
+    return [
+        [
+            total(
+                ratio(c * trace, denominator * below)
+                for c, (trace, below) in zip(numerators, traces, strict=True)
+                if not c.is_zero()
+            )
+            for numerators, denominator in row
+        ]
+        for row in products
+    ]

@@ -27,8 +27,6 @@ from ptmcad.algebra.resultants import Check, interpolate_rows, nothing
 
 Rows = Sequence[Coefficient]
 """A polynomial in v over Z[u, w]: its coefficients, constant first, the last one not zero."""
-_Univariate = Sequence[Sequence[fmpz_poly]]
-"""One or two of them, their coefficients in one variable."""
 
 
 def rows_in(p: Coefficient, axis: int) -> tuple[Coefficient, ...]:
@@ -49,14 +47,12 @@ def at_value(rows: Rows, v: fmpq) -> Coefficient:
 
 def discriminant(rows: Rows, check: Check = nothing) -> Coefficient:
     """The discriminant with respect to v, for degree at least 1, up to a nonzero constant."""
-    return _interpolated([rows], lambda ps: resultants.discriminant(ps[0], check), _of_one, check)
+    return _interpolated([rows], check)
 
 
 def resultant(p: Rows, q: Rows, check: Check = nothing) -> Coefficient:
     """The resultant with respect to v, up to a nonzero constant."""
-    return _interpolated(
-        [p, q], lambda ps: resultants.resultant(ps[0], ps[1], check), _of_two, check
-    )
+    return _interpolated([p, q], check)
 
 
 def predicted_work(polynomials: Sequence[Rows]) -> int:
@@ -64,10 +60,10 @@ def predicted_work(polynomials: Sequence[Rows]) -> int:
     times bits.
     """
     shorter, _ = _deflated(polynomials)
-    bound = _of_one if len(polynomials) == 1 else _of_two
+    _, bound = _OF[len(polynomials)]
     values = 1
     for variable in (0, 1):
-        values *= max(bound([_degrees(rows, variable) for rows in shorter]), 0) + 1
+        values *= max(bound(*(_degrees(rows, variable) for rows in shorter)), 0) + 1
     bits = max(_bits(row) for p in shorter for row in p)
     return values * sum(len(p) - 1 for p in shorter) ** 3 * max(bits, 1)
 
@@ -114,30 +110,25 @@ def _degrees(rows: Rows, variable: int) -> tuple[UnivariatePolynomial, ...]:
     )
 
 
-def _of_one(ps: _Univariate) -> int:
-    return resultants.discriminant_degree(ps[0])
+_OF: dict[int, tuple[Callable[..., fmpz_poly], Callable[..., int]]] = {
+    1: (resultants.discriminant, resultants.discriminant_degree),
+    2: (resultants.resultant, resultants.resultant_degree),
+}
+"""What there is of one polynomial and of two, and the bound for its degree."""
 
 
-def _of_two(ps: _Univariate) -> int:
-    return resultants.resultant_degree(ps[0], ps[1])
-
-
-def _interpolated(
-    polynomials: Sequence[Rows],
-    compute: Callable[[_Univariate], fmpz_poly],
-    bound: Callable[[_Univariate], int],
-    check: Check,
-) -> Coefficient:
-    """What is computed over Z[w] at integers u, as an element of Z[u, w]."""
+def _interpolated(polynomials: Sequence[Rows], check: Check) -> Coefficient:
+    """The discriminant of one, or the resultant of two, by those over Z[w] at integers u."""
+    compute, bound = _OF[len(polynomials)]
     shorter, (k, m) = _deflated(polynomials)
-    degree = bound([_degrees(rows, 0) for rows in shorter])
+    degree = bound(*(_degrees(rows, 0) for rows in shorter))
     in_w = [
         [coefficients_in(row, 1) for row in rows] for rows in shorter
     ]  # of powers of w, in Z[u]
 
     def at(u: int) -> fmpz_poly:
         values = [[fmpz_poly([c(u) for c in row]) for row in rows] for rows in in_w]
-        return compute(values) if all(any(rows) for rows in values) else fmpz_poly([])
+        return compute(*values, check) if all(map(any, values)) else fmpz_poly([])
 
     return PLANE.from_dict(
         {(i * k, j * m): c for (i, j), c in interpolate_rows(at, degree, check).items()}

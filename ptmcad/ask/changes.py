@@ -13,8 +13,7 @@ from functools import partial
 from itertools import pairwise
 from time import perf_counter
 
-from ptmcad.algebra.algebraic_numbers import algebraic_number
-from ptmcad.algebra.real_roots import RealRoot, refine
+from ptmcad.algebra.real_roots import RealRoot, algebraic_number, refine
 from ptmcad.answer.arrangement import correspondence
 from ptmcad.answer.changes import TOLERANCE, Change, Changes
 from ptmcad.ask.changewords import described

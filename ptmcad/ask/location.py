@@ -14,9 +14,15 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 from flint import fmpq
 
-from ptmcad.algebra.algebraic_numbers import root_of
 from ptmcad.algebra.polynomials import UnivariatePolynomial, coefficients_in, from_plane, univariate
-from ptmcad.algebra.real_roots import has_root_between, isolate, order, sign_at, squarefree_part
+from ptmcad.algebra.real_roots import (
+    has_root_between,
+    isolate,
+    order,
+    root_of,
+    sign_at,
+    squarefree_part,
+)
 from ptmcad.answer.consistency import contradiction
 from ptmcad.answer.location import Location
 from ptmcad.answer.regionmap import Component, Kind, RegionMap, Status

@@ -31,7 +31,6 @@ from ptmcad.errors import LimitReached
 from ptmcad.exact.areas.regionareas import areas_of
 from ptmcad.exact.cad.crossings import Crossing
 from ptmcad.exact.cad.decomposition import (
-    Decomposition,
     crossings_of,
     joined_cells,
     neighbours_of,
@@ -141,13 +140,6 @@ def _stages(problem: SliceProblem, options: Options, clock: _Clock) -> Iterator[
     clock.report("stacks")
     cut = stacks_of(problem.window, variety, projection)
     clock.stage("stacks")
-    yield from _counted(problem, options, clock, cut)
-
-
-def _counted(
-    problem: SliceProblem, options: Options, clock: _Clock, cut: Decomposition
-) -> Iterator[PartialMap]:
-    """Counts and adjacency, in either order, then areas."""
     crossings: tuple[Crossing, ...] = ()
     for stage in ("adjacency", "counts") if options.sparing else ("counts", "adjacency"):
         report = partial(clock.report, stage)
@@ -164,6 +156,6 @@ def _counted(
     if options.areas:
         clock.report("areas")
         tolerance = options.area_tolerance or AREA_TOLERANCE
-        areas = areas_of(problem, cells, tolerance, options.without, clock.check)
+        areas = areas_of(problem, cells, tolerance, without, clock.check)
         clock.stage("areas")
         yield PartialMap(cut.variety, cells, areas)

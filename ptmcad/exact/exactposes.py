@@ -16,8 +16,7 @@ from itertools import pairwise
 from flint import fmpq
 
 from ptmcad.algebra.fibre_algebra import WorkLimit
-from ptmcad.algebra.fibre_points import RealPoint, points
-from ptmcad.algebra.number_field import Modulus
+from ptmcad.algebra.number_field import Modulus, RealPoint, points
 from ptmcad.algebra.polynomials import Values
 from ptmcad.answer.poses import Pose, Poses
 from ptmcad.answer.regionmap import Status

@@ -20,7 +20,6 @@ from ptmcad.algebra.fibre_algebra import (
     WorkLimit,
     evaluate,
     hermite_matrix,
-    scalar_matrix,
     univariate_representation,
 )
 from ptmcad.algebra.polynomials import Values
@@ -223,7 +222,7 @@ def _off(point: PointSystem, conditions: Sequence[RationalPolynomial]) -> tuple[
     would say the same, and can take hours.
     """
     algebra = point.algebra
-    weight = scalar_matrix(algebra.dimension, fmpq(1))
+    weight = algebra.one
     for p in conditions:
         weight = weight * evaluate(algebra, p)
     different = hermite_matrix(algebra, weight).rank()

@@ -19,8 +19,7 @@ from typing import Any, NamedTuple
 
 from flint import arb, ctx, fmpq
 
-from ptmcad.algebra.fibre_points import RealPoint, value_at
-from ptmcad.algebra.number_field import FieldElement
+from ptmcad.algebra.number_field import FieldElement, RealPoint, value_at
 from ptmcad.algebra.polynomials import Values
 from ptmcad.answer.poses import Pose, springs_of
 from ptmcad.exact.point_system import PointSystem
@@ -119,7 +118,7 @@ class ExactSolution:
         """Whether all of these numbers of the field are greater than zero at this solution, decided
         exactly.
         """
-        return all(is_positive(condition.conjugate(self.point.field)) for condition in conditions)
+        return all(sign_of(condition.conjugate(self.point.field)) > 0 for condition in conditions)
 
 
 def solution_at(
@@ -153,16 +152,16 @@ def solution_at(
     return ExactSolution(point, quantities, stiffness, inequalities, stability, known.criterion)
 
 
-def is_positive(element: FieldElement) -> bool:
-    """Whether a number is greater than zero, decided exactly."""
+def sign_of(element: FieldElement) -> int:
+    """-1, 0 or 1, decided exactly."""
     if element.is_zero:
-        return False
+        return 0
     bits = 64
     while True:
         with ctx.workprec(bits):
             ball = element.ball(element.field.evaluation())
             if not ball.contains(0):
-                return bool(ball > 0)
+                return 1 if ball > 0 else -1
         bits *= 2
 
 

@@ -8,8 +8,10 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from fractions import Fraction
+from functools import reduce
 from itertools import combinations
 from math import isqrt
+from operator import add
 from typing import NamedTuple
 
 from flint import acb_mat, arb, arb_mat, ctx, fmpq
@@ -69,9 +71,7 @@ def stiffness_of(jacobian: Matrix, matrix: Matrix) -> Stiffness:
             laplace([[matrix[i][j] for j in chosen] for i in chosen])
             for chosen in combinations(range(size), order)
         )
-        total = next(minors)
-        for minor in minors:
-            total = total + minor
+        total = reduce(add, minors)
         sums.append(total if order % 2 == 0 else total.times(fmpq(-1)))
     nullity = next((k for k, total in enumerate(sums) if not total.is_zero), size)
     return Stiffness(matrix, nullity, rationals=tuple(rational_roots(sums[nullity:])))

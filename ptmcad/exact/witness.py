@@ -36,6 +36,7 @@ from ptmcad.model.fourbars import IN_TWO_WAYS, closed_by, four_bars
 from ptmcad.text.expressions import Expression, constant
 from ptmcad.text.flint_numbers import from_fraction, to_fraction
 
+Degenerate = DegenerateSliceError | InfiniteSolutionsError
 Point = tuple[fmpq, fmpq]
 SHARES = tuple(
     (Fraction(a, b), Fraction(c, d))
@@ -53,11 +54,11 @@ Solutions = tuple[int, int]
 
 
 def with_witness(
-    error: DegenerateSliceError | InfiniteSolutionsError,
+    error: Degenerate,
     on: SystemOnAxes,
     window: Window,
     place: Callable[[Point], str],
-) -> DegenerateSliceError | InfiniteSolutionsError:
+) -> Degenerate:
     """The error, with a point of the window that shows it added to its words; as it is where none
     was found.
 
@@ -121,9 +122,6 @@ def points(window: Window) -> Iterator[Point]:
             for (low, high), s in zip(window, shares, strict=True)
         )  # fmt: skip
         yield x, y
-
-
-Degenerate = DegenerateSliceError | InfiniteSolutionsError
 
 
 def with_folds(

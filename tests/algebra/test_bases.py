@@ -18,8 +18,7 @@ from ptmcad.algebra import bases, msolve
 from ptmcad.algebra.bases import quotient
 from ptmcad.algebra.fibre_algebra import RationalPolynomial, WorkLimit, own_quotient
 from ptmcad.algebra.membership import lies_in_ideal
-from ptmcad.algebra.msolve import MsolveError, parsed_basis
-from ptmcad.algebra.proved import quotient_by_msolve
+from ptmcad.algebra.msolve import MsolveError, parsed_basis, quotient_by_msolve
 from ptmcad.algebra.quotient_algebra import standard_monomials
 from ptmcad.errors import LimitReached, PtmcadWarning
 

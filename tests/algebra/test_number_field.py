@@ -15,8 +15,9 @@ from ptmcad.algebra.number_field import (
     FieldElement,
     Modulus,
     RealField,
-    polynomial_at,
+    RealPoint,
     rational_roots,
+    value_at,
 )
 from ptmcad.algebra.real_roots import isolate
 from ptmcad.text.flint_numbers import from_fraction, to_fraction
@@ -70,7 +71,9 @@ def expressions(draw: st.DrawFn, field: RealField) -> tuple[FieldElement, fmpq_p
             e, r = e - e + f, s
         else:
             c = draw(NUMBERS)
-            e = polynomial_at(field, (e, f), {(2, 1): c, (0, 0): fmpq(1), (0, 3): fmpq(-1)})
+            e = value_at(
+                RealPoint(field, (e, f), 1), {(2, 1): c, (0, 0): fmpq(1), (0, 3): fmpq(-1)}
+            )
             r = (c * r * r * s + 1 - s * s * s) % modulus
     return e, r
 

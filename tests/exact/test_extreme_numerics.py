@@ -15,7 +15,7 @@ from support.examples import examples
 
 import ptmcad
 from ptmcad.algebra import descartes
-from ptmcad.algebra.arcs import arc_integral
+from ptmcad.algebra.chords import arc_integral
 from ptmcad.algebra.real_roots import RealRoot, isolate
 from ptmcad.answer.regionmap import Status
 from ptmcad.question.config import slice_from_mapping

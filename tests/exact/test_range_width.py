@@ -14,7 +14,7 @@ from flint import fmpq
 
 import ptmcad
 from ptmcad.algebra.polynomials import PLANE
-from ptmcad.algebra.real_roots import isolate
+from ptmcad.algebra.real_roots import RealRoot, isolate
 from ptmcad.answer.widths import Maximum, Place
 from ptmcad.ask.lines.along import operation_widths
 from ptmcad.exact.cad.projection import curve
@@ -105,8 +105,8 @@ def by_hand(low: object, high: object, left: int, right: int) -> RangeStrip:
     middle = fmpq(left + right, 2) + fmpq(1, 7)
     last = len(isolate(lower.polynomial_over(middle), *fibre)) - 1
     return RangeStrip(
-        BaseEnd(fmpq(left), None, None),
-        BaseEnd(fmpq(right), None, None),
+        BaseEnd(RealRoot.of(fmpq(left)), None),
+        BaseEnd(RealRoot.of(fmpq(right)), None),
         middle,
         RangeEnd(lower, last, fibre[0]),
         RangeEnd(upper, 0, fibre[1]),

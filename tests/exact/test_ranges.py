@@ -19,7 +19,7 @@ from support import oracle
 from support.random_slices import drawn
 
 import ptmcad
-from ptmcad.algebra.algebraic_numbers import compare, refined
+from ptmcad.algebra.real_roots import compare, refined
 from ptmcad.answer.counts import Counts
 from ptmcad.answer.intervals import CountIntervals, Event, lower, upper
 from ptmcad.errors import ConfigError, DegenerateSliceError, GeometryError, InfiniteSolutionsError

@@ -75,7 +75,6 @@ def decompose(polynomials: Sequence[fmpz_mpoly], window: Window, base: int) -> D
     links = []
     for s, found in enumerate(crossings):
         end = stacks[s].right
-        assert end.root is not None
         closed = any(same_up_to_sign(line, end.root.polynomial) for line in lines)
         for p in found:
             check_separator(curves, p, stacks[s], stacks[s + 1])
@@ -93,7 +92,6 @@ def check_separator(
     claims.
     """
     end = left.right
-    assert end.root is not None
     assert left.sample <= p.low < p.high <= right.sample
     q = (
         end.root.polynomial
@@ -365,7 +363,7 @@ def check_area(name: str, base: int, tolerance: Fraction, half: str = "") -> Non
     u, v = at[base], at[1 - base]
     stack = next(
         n for n, s in enumerate(found.stacks)
-        if (s.left.root is None or s.left.root.high <= u) and (s.right.root is None or u <= s.right.root.low)
+        if s.left.root.high <= u <= s.right.root.low
     )  # fmt: skip
     level = sum(len(_below(c, u, found.fibre[0], v)) for c in found.curves)
     bounds = areas[found.pieces[stack][level]]

@@ -110,7 +110,7 @@ class RegionStacks(NamedTuple):
         """For each stack the walls between different regions, from below."""
         curve_of = by_component(self.curves)
         for stack, row, span in zip(self.stacks, self.regions, spans, strict=True):
-            ends = stack.left, stack.right
+            ends = stack.left.root, stack.right.root
             yield [
                 Border(curve_of[wall.component], wall.root, below, above, span, ends)
                 for wall, (below, above) in zip(stack.walls, pairwise(row), strict=True)
@@ -263,7 +263,7 @@ def _areas(
 
 def _isolated(stack: StackData) -> fmpq:
     """About the stack's width."""
-    return stack.right.low - stack.left.high
+    return stack.right.root.low - stack.left.root.high
 
 
 def _spans(stacks: Sequence[StackData], share: fmpq, *, own: bool) -> list[Interval]:
@@ -287,17 +287,12 @@ def _span(stack: StackData, left_strip: fmpq, right_strip: fmpq) -> Interval:
     """The stack's base interval shortened to rational ends, of small height as all arithmetic
     starts from them.
     """
-    left, right = stack.left.value, stack.right.value
-    if stack.left.root is not None:
-        root = refine(stack.left.root, left_strip / 2)
-        left = root.high
-        if not root.is_rational:
-            left = simplest_between(left, min(left + left_strip / 2, stack.sample))
-    if stack.right.root is not None:
-        root = refine(stack.right.root, right_strip / 2)
-        right = root.low
-        if not root.is_rational:
-            right = simplest_between(max(right - right_strip / 2, stack.sample), right)
+    first, last = refine(stack.left.root, left_strip / 2), refine(stack.right.root, right_strip / 2)
+    left, right = first.high, last.low
+    if not first.is_rational:
+        left = simplest_between(left, min(left + left_strip / 2, stack.sample))
+    if not last.is_rational:
+        right = simplest_between(max(right - right_strip / 2, stack.sample), right)
     return left, right
 
 

@@ -3,7 +3,7 @@ integral.
 
 Guarantee: the integral lies in the enclosure, whichever way it was found: exactly, where the curve
 is a polynomial's graph, by the branch's Taylor series (`algebra.curve_branches`), by its Puiseux series
-beside a singular point (`algebra.puiseux`), between arcs (`algebra.arcs`), between horizontals, or
+beside a singular point (`algebra.puiseux`), between arcs (`algebra.chords`), between horizontals, or
 between the window's edges.
 """
 
@@ -13,11 +13,10 @@ from typing import NamedTuple
 
 from flint import arb, ctx, fmpq
 
-from ptmcad.algebra.arcs import arc_integral, graph_integral
+from ptmcad.algebra.chords import arc_integral, graph_integral
 from ptmcad.algebra.curve_branches import Integral, TooFewBits, branch_integral
 from ptmcad.algebra.real_roots import Interval, RealRoot, avoids, order, refine
 from ptmcad.exact.cad.projection import FibredCurve
-from ptmcad.exact.cad.stacks import BaseEnd
 from ptmcad.text.balls import exact
 from ptmcad.text.flint_numbers import simplest_between
 
@@ -77,7 +76,7 @@ class Border(NamedTuple):
     below: int
     above: int
     span: Interval
-    ends: tuple[BaseEnd, BaseEnd]
+    ends: tuple[RealRoot, RealRoot]
 
     def over(self, u: fmpq, effort: PanelEffort) -> RealRoot:
         """Its height over an abscissa of its stack, isolated."""
@@ -163,7 +162,8 @@ def _at_end(
     """
     end, near, far = border.ends[side], over[side], over[1 - side]
     width = far - near
-    critical, strip = _place_of(end, near), arb(0)
+    # a rational root may become known as such only when it is refined
+    critical, strip = near if order(near, end) == 0 else end.middle, arb(0)
     if critical == near:
         # what is not exactly zero cannot be divided by a power of zero
         bottom, top = effort.fibre
@@ -181,14 +181,8 @@ def _at_end(
     return WallPanel(border, *ends, value + strip, True, 0)
 
 
-def _place_of(end: BaseEnd, near: fmpq) -> fmpq:
-    """The end's place as far as it is known, exactly where ``near`` is that place."""
-    # a rational root may become known as such only when it is refined
-    return near if end.root is not None and order(near, end.root) == 0 else end.value
-
-
 def _about_end(
-    border: Border, end: BaseEnd, ends: Interval, effort: PanelEffort, allowed: fmpq, bits: int
+    border: Border, end: RealRoot, ends: Interval, effort: PanelEffort, allowed: fmpq, bits: int
 ) -> tuple[arb, fmpq] | None:
     """The integral from beside an end of the stack as far as a series about it reaches, and how
     far; None when that fails.
@@ -208,8 +202,7 @@ def _about_end(
 
     def enclosed() -> tuple[arb, fmpq] | None:
         fine = abs(far - near) / fmpq(2) ** ctx.prec
-        abscissa = arb(end.value) if end.root is None else refine(end.root, fine).ball
-        beside = Beside(abscissa, near, far)
+        beside = Beside(refine(end, fine).ball, near, far)
         return puiseux_integral(
             border.curve.in_v, beside, lambda u: border.over(u, effort), 2 * effort.order, allowed
         )
@@ -290,16 +283,11 @@ def _smooth(border: Border, over: Interval, effort: PanelEffort, allowed: fmpq) 
         return _more_precisely(by_series) if obstacle else series
     arcs = Integral(between, fmpq(1), 1.0, False)
     if obstacle and between.rad() > arb(allowed) * 2**_BITS_BY_HALVES:
-        return _or_else(arcs, lambda: _more_precisely(by_series))
+        try:
+            return _more_precisely(by_series) or arcs
+        except TooFewBits:
+            return arcs
     return arcs if series is None or between.rad() < arb(allowed) else series
-
-
-def _or_else(arcs: Integral, enclose: Callable[[], Integral | None]) -> Integral:
-    """The enclosure, or that by arcs where there is none."""
-    try:
-        return enclose() or arcs
-    except TooFewBits:
-        return arcs
 
 
 def _sharper(enclose: Callable[[], Integral | None], allowed: fmpq) -> Integral | None:

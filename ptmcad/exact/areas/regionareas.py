@@ -16,7 +16,7 @@ from math import prod
 
 from flint import fmpq
 
-from ptmcad.algebra.arcs import on_graph
+from ptmcad.algebra.chords import on_graph
 from ptmcad.algebra.polynomials import RationalUnivariate, UnivariatePolynomial
 from ptmcad.algebra.real_roots import (
     RealRoot,
@@ -138,10 +138,10 @@ def before(parts: RegionStacks, middle: fmpq) -> RegionStacks:
     stacks, rows = [], []
     for stack, row in zip(parts.stacks, parts.regions, strict=True):
         left, right = (_apart(end, middle) for end in (stack.left, stack.right))
-        if left.value >= middle:
+        if left.root.middle >= middle:
             break
-        if right.value > middle:
-            right = BaseEnd(middle, None, None)
+        if right.root.middle > middle:
+            right = BaseEnd(RealRoot.of(middle), None)
         stacks.append(_between(left, right, stack.walls, stack.heights))
         rows.append(row)
     return parts._replace(stacks=stacks, regions=rows)
@@ -151,7 +151,7 @@ def below(parts: RegionStacks, line: RationalUnivariate) -> RegionStacks:
     """The half below a line, which is within the window: its stacks end where walls cross the line,
     too.
     """
-    ends = [stack.right.root for stack in parts.stacks if stack.right.root]
+    ends = [stack.right.root for stack in parts.stacks[:-1]]
     on_line = (q for c in parts.curves if (q := on_graph(c.in_v, line)))
     crossings = squarefree_part(prod(on_line, start=UnivariatePolynomial([1])))
     for k, end in enumerate(ends):
@@ -159,8 +159,8 @@ def below(parts: RegionStacks, line: RationalUnivariate) -> RegionStacks:
             crossings //= crossings.gcd(end.polynomial)
     numbered = numbered_disjoint([*ends, *isolate(crossings, *parts.base)])
     cuts = inside([root for _, root in numbered], parts.base)
-    edges = [BaseEnd(edge, None, None) for edge in parts.base]
-    places = [edges[0], *(BaseEnd(cut.middle, cut, None) for cut in cuts), edges[1]]
+    edges = map(RealRoot.of, parts.base)
+    places = [BaseEnd(place, None) for place in (next(edges), *cuts, next(edges))]
     # the numbers of the abscissae come first: behind each of them the next stack begins
     begun = accumulate((number < len(ends) for number, _ in numbered), initial=0)
     stacks, rows = [], []
@@ -176,18 +176,16 @@ def below(parts: RegionStacks, line: RationalUnivariate) -> RegionStacks:
 def _apart(end: BaseEnd, middle: fmpq) -> BaseEnd:
     """The end with the interval of its root before or behind an abscissa, or as that abscissa."""
     root = end.root
-    if root is None:
-        return end
     if order(middle, root) == 0:
-        return BaseEnd(middle, RealRoot(root.polynomial, middle, middle), None)
+        return BaseEnd(RealRoot(root.polynomial, middle, middle), None)
     while root.low <= middle <= root.high:
         root = halve(root)
-    return BaseEnd(root.middle, root, None)
+    return BaseEnd(root, None)
 
 
 def _between(
     left: BaseEnd, right: BaseEnd, walls: Sequence[Wall], heights: Sequence[fmpq]
 ) -> StackData:
     return StackData(
-        left, right, simplest_between(left.high, right.low), tuple(walls), tuple(heights)
+        left, right, simplest_between(left.root.high, right.root.low), tuple(walls), tuple(heights)
     )

@@ -21,11 +21,10 @@ from typing import NamedTuple
 
 from flint import fmpq
 
-from ptmcad.algebra.real_roots import Interval, refine
+from ptmcad.algebra.real_roots import Interval, RealRoot, refine
 from ptmcad.answer.boundarysurface import ACCURACY
 from ptmcad.answer.regionmap import Wall
 from ptmcad.exact.cad.projection import by_component
-from ptmcad.exact.cad.stacks import BaseEnd
 from ptmcad.exact.slicearrangement import Picture
 from ptmcad.text.flint_numbers import from_fraction, simplest_between, to_fraction
 
@@ -162,7 +161,7 @@ class BoundaryStrips:
         rows = picture.cut.rows(picture.neighbours.region_of)
         for stack, row in zip(picture.cut.stacks, rows, strict=True):
             kept = [k for k, (a, b) in enumerate(pairwise(row)) if a != b]
-            low, high = _inner(stack.left, stack.sample), _inner(stack.right, stack.sample)
+            low, high = (_inner(end.root, stack.sample) for end in (stack.left, stack.right))
             regions = (row[0], *(row[k + 1] for k in kept))
             found.append(_StackPart(low, high, tuple(stack.walls[k] for k in kept), regions))
         return found
@@ -242,10 +241,8 @@ def _abscissa(strip: BoundaryStrip, share: float) -> fmpq:
     return simplest_between(u - near, u + near)
 
 
-def _inner(end: BaseEnd, sample: fmpq) -> fmpq:
+def _inner(end: RealRoot, sample: fmpq) -> fmpq:
     """A rational abscissa just inside of a stack."""
-    near = abs(sample - end.value) * _NEAR
-    if end.root is None:
-        return end.value + near if end.value < sample else end.value - near
-    root = refine(end.root, near)
+    near = abs(sample - end.middle) * _NEAR
+    root = refine(end, near)
     return root.high + near if root.high < sample else root.low - near

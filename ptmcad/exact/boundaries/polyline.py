@@ -24,10 +24,18 @@ from fractions import Fraction
 
 from flint import arb, ctx, fmpq
 
-from ptmcad.algebra.algebraic_numbers import root_of
 from ptmcad.algebra.chords import slope_over
 from ptmcad.algebra.polynomials import local_coefficients
-from ptmcad.algebra.real_roots import Interval, RealRoot, halve, isolate, order, refine, sign_at
+from ptmcad.algebra.real_roots import (
+    Interval,
+    RealRoot,
+    halve,
+    isolate,
+    order,
+    refine,
+    root_of,
+    sign_at,
+)
 from ptmcad.algebra.resultants import Check, nothing
 from ptmcad.answer.regionmap import CriticalValue, RegionMap
 from ptmcad.exact.cad.projection import FibredCurve, by_component, curves_of

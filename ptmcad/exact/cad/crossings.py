@@ -31,7 +31,7 @@ from ptmcad.algebra.resultants import Check, nothing
 from ptmcad.answer.regionmap import Reason
 from ptmcad.exact.cad.criticalpoints import PointsOver
 from ptmcad.exact.cad.projection import FibredCurve, max_height_bits
-from ptmcad.exact.cad.stacks import BaseEnd, StackData, roots_over
+from ptmcad.exact.cad.stacks import StackData, roots_over
 from ptmcad.text.flint_numbers import simplest_between
 
 ROUNDS = 4
@@ -107,9 +107,8 @@ def cross(
     check: Check = nothing,
 ) -> Crossing:
     """All adjacent pairs of cells across the abscissa between two neighbouring stacks, with proof."""
-    end = left.right
-    assert end.root is not None
-    reach, extent = min(end.value - left.sample, right.sample - end.value), fibre[1] - fibre[0]
+    end = left.right.root
+    reach, extent = min(end.middle - left.sample, right.sample - end.middle), fibre[1] - fibre[0]
     # the largest bracket, the branches' largest intervals, and the bits by which both shrink
     width, resolution, step = reach, extent, 8
     extra: tuple[fmpq, ...] = ()
@@ -140,7 +139,7 @@ def cross(
         step = 2 * step
         if attempt >= rounds:
             if points is None:
-                points = PointsOver(tuple(curves), end.root, check)
+                points = PointsOver(tuple(curves), end, check)
                 # with the heights now known, wide brackets may do
                 width, resolution, step = reach, extent, 8
             separating = (
@@ -149,10 +148,9 @@ def cross(
             extra = tuple(sorted({*extra, *separating}))
 
 
-def _bracket(end: BaseEnd, width: fmpq, low: fmpq, high: fmpq) -> Interval:
+def _bracket(end: RealRoot, width: fmpq, low: fmpq, high: fmpq) -> Interval:
     """Rational points on both sides of the critical abscissa, inside the neighbouring stacks."""
-    assert end.root is not None
-    root = refine(end.root, width)
+    root = refine(end, width)
     if root.is_rational:
         return max(root.low - width, low), min(root.low + width, high)
     return root.low, root.high
@@ -200,7 +198,7 @@ def _open_gaps(
 
 
 def _reason(
-    gap: StackGap, curves: Sequence[FibredCurve], end: BaseEnd, points: PointsOver | None
+    gap: StackGap, curves: Sequence[FibredCurve], end: RealRoot, points: PointsOver | None
 ) -> Reason | None:
     """Why branches run into at most one point of the gap; None when that is not known.
 
@@ -224,14 +222,13 @@ def _reason(
     return Reason.POINT
 
 
-def _meets(curves: Sequence[FibredCurve], end: BaseEnd, edge: fmpq) -> bool:
+def _meets(curves: Sequence[FibredCurve], end: RealRoot, edge: fmpq) -> bool:
     """Whether a curve passes through the point of the window's edge over the critical abscissa."""
-    assert end.root is not None
-    return any(vanishes_at(c.trace(edge), end.root) for c in curves)
+    return any(vanishes_at(c.trace(edge), end) for c in curves)
 
 
 def _between_points(
-    points: PointsOver, gap: StackGap, curves: Sequence[FibredCurve], end: BaseEnd
+    points: PointsOver, gap: StackGap, curves: Sequence[FibredCurve], end: RealRoot
 ) -> list[fmpq]:
     """Heights between all possible points in the gap."""
     met = [edge for edge in gap.edges if _meets(curves, end, edge)]

@@ -32,24 +32,12 @@ class BaseEnd(NamedTuple):
 
     Attributes
     ----------
-    value : the edge, exactly; of an abscissa the middle of an interval that contains it.
-    root : the abscissa; None at the window's edge.
+    root : where it is; rational at the edge.
     critical : the abscissa's number; None at the window's edge.
     """
 
-    value: fmpq
-    root: RealRoot | None
+    root: RealRoot
     critical: int | None
-
-    @property
-    def low(self) -> fmpq:
-        """The lower end of the root's interval, or the edge."""
-        return self.root.low if self.root else self.value
-
-    @property
-    def high(self) -> fmpq:
-        """The upper end of the root's interval, or the edge."""
-        return self.root.high if self.root else self.value
 
 
 class StackData(NamedTuple):
@@ -96,12 +84,11 @@ def lift(
     avoided, lines : curves, and lines by their polynomials in u, that are no walls but on which no
         sample may lie.
     """
-    ends = [BaseEnd(base[0], None, None)]
-    ends += [BaseEnd(r.middle, r, k) for k, r in enumerate(abscissae)]
-    ends.append(BaseEnd(base[1], None, None))
+    edges = [BaseEnd(RealRoot.of(edge), None) for edge in base]
+    ends = [edges[0], *(BaseEnd(r, k) for k, r in enumerate(abscissae)), edges[1]]
     stacks = []
     for left, right in pairwise(ends):
-        sample = _simplest_off(left.high, right.low, lines)
+        sample = _simplest_off(left.root.high, right.root.low, lines)
         roots = roots_over(curves, sample, fibre)
         heights = heights_between(
             [r for _, r in roots], fibre, [c.polynomial_over(sample) for c in avoided]

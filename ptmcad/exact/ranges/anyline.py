@@ -22,8 +22,7 @@ from typing import NamedTuple
 
 from flint import fmpq
 
-from ptmcad.algebra.algebraic_numbers import algebraic_number, in_order
-from ptmcad.algebra.fibre_points import RealPoint, points, value_at
+from ptmcad.algebra.number_field import points, value_at
 from ptmcad.algebra.plane_determinants import determinant
 from ptmcad.algebra.polynomials import (
     ONE,
@@ -42,7 +41,7 @@ from ptmcad.algebra.quotient_algebra import (
     multiplication_denominator,
     trace_form,
 )
-from ptmcad.algebra.real_roots import gaps, isolate
+from ptmcad.algebra.real_roots import algebraic_number, gaps, in_order, isolate
 from ptmcad.algebra.trigonometric_ring import RationalPolynomial
 from ptmcad.answer.intervals import End, Span
 from ptmcad.errors import ConfigError, DegenerateSliceError, HypothesisError, InfiniteSolutionsError
@@ -53,11 +52,11 @@ from ptmcad.exact.models.system import ALONG, SliceSystem, lifted, on_slice, sat
 from ptmcad.exact.point_system import DegeneratePoint, point_system
 from ptmcad.exact.ranges.exactline import END_WIDTH, intervals, runs
 from ptmcad.exact.ranges.rangestrips import RangeStrips
-from ptmcad.exact.statics import is_positive
+from ptmcad.exact.statics import sign_of
 from ptmcad.question.line import line_of
 from ptmcad.question.slice import Axis, Slice
 from ptmcad.text.enclosure import AlgebraicNumber
-from ptmcad.text.flint_numbers import from_fraction, interval_of, simplest_between, to_fraction
+from ptmcad.text.flint_numbers import from_fraction, interval_of, simplest_between
 
 MAX_DIMENSION = 40
 """Complex solutions, with multiplicity and at all conjugate values, up to which they are
@@ -149,8 +148,6 @@ def lines_of(slice: Slice, along: str, found: RangeStrips) -> list[SpecialLine]:
 
 def number_at(end: BaseEnd) -> End:
     """Where an end of strips is."""
-    if end.root is None:
-        return to_fraction(end.value)
     number = algebraic_number(end.root)
     return number if number.exact is None else number.exact
 
@@ -267,8 +264,8 @@ def _counting(
             return None
         stable = open_ones = 0
         for solution in points(point.algebra, None)[0]:
-            if all(_sign(solution, p) > 0 for p in (*point.inequalities, *within)):
-                signs = [_sign(solution, p) for p in point.stability]
+            if all(sign_of(value_at(solution, p)) > 0 for p in (*point.inequalities, *within)):
+                signs = [sign_of(value_at(solution, p)) for p in point.stability]
                 stable += all(s > 0 for s in signs)
                 # a flat minimum, or a flat loop; of a system the conditions are what is called
                 # stable
@@ -276,11 +273,6 @@ def _counting(
         return stable, stable + open_ones
 
     return count_at
-
-
-def _sign(solution: RealPoint, p: RationalPolynomial) -> int:
-    value = value_at(solution, p)
-    return 0 if value.is_zero else 1 if is_positive(value) else -1
 
 
 def _spans(ends: Sequence[End], here: Sequence[bool]) -> tuple[Span, ...]:

@@ -20,7 +20,7 @@ from typing import Any
 
 from flint import fmpq
 
-from ptmcad.algebra.algebraic_numbers import in_order, roots_in
+from ptmcad.algebra.real_roots import in_order, roots_in
 from ptmcad.answer.counts import operation_number
 from ptmcad.answer.intervals import Change, CountInterval, CountIntervals, End, lower, upper
 from ptmcad.answer.regionmap import Component

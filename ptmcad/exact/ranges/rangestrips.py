@@ -26,6 +26,9 @@ from ptmcad.exact.stages import counts_of, decomposition_of, problem_of
 from ptmcad.question.slice import Slice, without_free_lengths
 from ptmcad.text.flint_numbers import simplest_between
 
+RANGE_END_WIDTH = fmpq(1, 2**120)
+"""To which irrational ends and values of branches are known, where nothing else is asked for."""
+
 
 @dataclass(frozen=True, slots=True)
 class RangeEnd:
@@ -186,19 +189,15 @@ def bound_over(
         step = 2 * step
 
 
-def base_interval(strip: RangeStrip, width: fmpq) -> tuple[Interval, Interval]:
-    """Intervals that hold the two ends of the strip's base: of length zero at rational ends, else
-    within ``width``.
-    """
-    return end_interval(strip.left, width), end_interval(strip.right, width)
+def base_interval(strip: RangeStrip) -> tuple[Interval, Interval]:
+    """Intervals that hold the two ends of the strip's base, as `end_interval` says."""
+    return end_interval(strip.left), end_interval(strip.right)
 
 
-def end_interval(end: BaseEnd, width: fmpq) -> Interval:
+def end_interval(end: BaseEnd, width: fmpq = RANGE_END_WIDTH) -> Interval:
     """An interval that holds an end of a base interval: of length zero at a rational one, else
     within ``width``.
     """
-    if end.root is None:
-        return end.value, end.value
     if end.root.polynomial.degree() == 1:
         value = fmpq(-end.root.polynomial[0], end.root.polynomial[1])
         return value, value

@@ -12,14 +12,14 @@ from fractions import Fraction
 
 from flint import arb, fmpq
 
-from ptmcad.algebra.algebraic_numbers import fibre_roots, refined, root_of
 from ptmcad.algebra.chords import side_of_chord, slope_over, tangent_resultant
 from ptmcad.algebra.polynomials import PLANE, UnivariatePolynomial
-from ptmcad.algebra.real_roots import Interval, RealRoot, isolate, refine, sign
+from ptmcad.algebra.real_roots import Interval, fibre_roots, isolate, refine, refined, root_of, sign
 from ptmcad.algebra.resultants import resultant
 from ptmcad.answer.intervals import End
 from ptmcad.exact.cad.stacks import BaseEnd
 from ptmcad.exact.ranges.rangestrips import (
+    RANGE_END_WIDTH,
     RangeEnd,
     RangeStrip,
     at_abscissa,
@@ -38,7 +38,7 @@ def ends_of(end: End) -> Interval:
     return interval_of(AlgebraicNumber.of(end))
 
 
-def limit(branch: RangeEnd, strip: RangeStrip, end: BaseEnd, width: fmpq) -> End | None:
+def limit(branch: RangeEnd, strip: RangeStrip, end: BaseEnd) -> End | None:
     """The limit of a branch at an end of its strip; None when it could not be separated from other
     points.
     """
@@ -46,12 +46,11 @@ def limit(branch: RangeEnd, strip: RangeStrip, end: BaseEnd, width: fmpq) -> End
         return to_fraction(branch.edge)
     margin = strip.fibre[1] - strip.fibre[0]
     wide = (strip.fibre[0] - margin, strip.fibre[1] + margin)
-    at = end_interval(end, width)
+    at = end_interval(end)
     distance = strip.sample - at[0]
     if at[0] == at[1]:
         fibre = branch.curve.polynomial_over(at[0])
     else:
-        assert end.root is not None
         fibre = resultant(
             branch.curve.in_u, [UnivariatePolynomial([c]) for c in end.root.polynomial.coeffs()]
         )
@@ -64,25 +63,25 @@ def limit(branch: RangeEnd, strip: RangeStrip, end: BaseEnd, width: fmpq) -> End
         if top is not None and bottom is not None:
             roots = fibre_roots(fibre, bottom, top)
             if len(roots) == 1:
-                return refined(roots[0], to_fraction(width))
+                return refined(roots[0], to_fraction(RANGE_END_WIDTH))
         distance = distance / 4
     return None
 
 
-def limits(strip: RangeStrip, end: BaseEnd, width: fmpq) -> Ends | None:
+def limits(strip: RangeStrip, end: BaseEnd) -> Ends | None:
     """Those of both branches."""
-    low, high = (limit(branch, strip, end, width) for branch in strip.branches)
+    low, high = (limit(branch, strip, end) for branch in strip.branches)
     return None if low is None or high is None else (low, high)
 
 
-def narrowing_length(strip: RangeStrip, end: BaseEnd, width: fmpq) -> fmpq | None:
+def narrowing_length(strip: RangeStrip, end: BaseEnd) -> fmpq | None:
     """A length from an end within which the range gets narrower away from it; None if not proved.
 
     For some slope s, v - s u of the lower branch does not fall away from the end, that of the upper
     one does not rise, and one of them moves: no point of either has a tangent of this slope, but
     over the end itself.
     """
-    at = end_interval(end, width)
+    at = end_interval(end)
     slopes = [fmpq(0)]
     for bits in (6, 20):
         run = (strip.sample - at[0]) / 2**bits
@@ -124,7 +123,7 @@ def _course(
             turns = tangent_resultant(p, (int(slope.p), int(slope.q)))
         except ArithmeticError:  # the curve is a line of this slope
             return abs(run), 0
-        own = (end.root or RealRoot.of(end.value)).polynomial
+        own = end.root.polynomial
         if not divmod(turns, own)[1]:
             turns = turns // own
         around = (at[0], strip.sample) if run > 0 else (strip.sample, at[1])

@@ -37,13 +37,13 @@ from typing import NamedTuple
 
 from flint import arb, fmpq
 
-from ptmcad.algebra.algebraic_numbers import algebraic_number, compare
-from ptmcad.algebra.real_roots import Interval
+from ptmcad.algebra.real_roots import Interval, algebraic_number, compare
 from ptmcad.answer.intervals import End, Span
 from ptmcad.answer.widths import Maximum, Place
 from ptmcad.exact.cad.stacks import BaseEnd
 from ptmcad.exact.ranges.anyline import SpecialLine, lines_of, number_at
 from ptmcad.exact.ranges.rangestrips import (
+    RANGE_END_WIDTH,
     RangeStrip,
     RangeStrips,
     at_abscissa,
@@ -64,7 +64,6 @@ from ptmcad.question.slice import Slice
 from ptmcad.text.enclosure import AlgebraicNumber, Enclosure
 from ptmcad.text.flint_numbers import interval_of, to_fraction
 
-_END_WIDTH = fmpq(1, 2**120)
 _MIN_PIECE = fmpq(1, 2**50)
 """Length of a piece, against the strip's, that is not cut any more."""
 _MAX_PIECES = 20_000
@@ -144,9 +143,9 @@ class _WidthSearch:
         self, end: BaseEnd, width: Interval, ends: Ends | None, attained: bool | None
     ) -> None:
         """A candidate at an end of a strip."""
-        place = Place.EDGE if end.root is None else Place.CRITICAL
-        critical = None if end.root is None else algebraic_number(end.root)
-        at = end_interval(end, _END_WIDTH)
+        place = Place.EDGE if end.critical is None else Place.CRITICAL
+        critical = None if end.critical is None else algebraic_number(end.root)
+        at = end_interval(end)
         self.candidates.append(_Candidate(place, at, width, critical, ends, attained))
 
     def attains(self, end: BaseEnd, width: Interval, ends: Ends | None) -> bool | None:
@@ -167,12 +166,14 @@ class _WidthSearch:
     # ------------------------------------------------------------------------------------------------ lower bounds
 
     def sample(self, strip: RangeStrip) -> None:
-        (_, left), (right, _) = base_interval(strip, _END_WIDTH)
+        (_, left), (right, _) = base_interval(strip)
         for k in range(1, 8):
             self.width_at(strip, left + (right - left) * fmpq(k, 8))
 
     def width_at(self, strip: RangeStrip, u: fmpq) -> Interval:
-        low, high = (at_abscissa(b, u, strip.fibre, _END_WIDTH) for b in (strip.low, strip.high))
+        low, high = (
+            at_abscissa(b, u, strip.fibre, RANGE_END_WIDTH) for b in (strip.low, strip.high)
+        )
         width = (high.low - low.high, high.high - low.low)
         self.known = max(self.known, width[0])
         return width
@@ -180,20 +181,20 @@ class _WidthSearch:
     # -------------------------------------------------------------------------------------------------- strips' ends
 
     def plateau(self, strip: RangeStrip) -> None:
-        (left, _), (_, right) = base_interval(strip, _END_WIDTH)
+        (left, _), (_, right) = base_interval(strip)
         width = self.width_at(strip, strip.sample)
         sides = {
-            number_at(end): self.attains(end, width, limits(strip, end, _END_WIDTH))
+            number_at(end): self.attains(end, width, limits(strip, end))
             for end in (strip.left, strip.right)
         }
         self.candidates.append(_Candidate(Place.PLATEAU, (left, right), width, sides=sides))
 
     def ends(self, strip: RangeStrip) -> None:
         """Settle neighbourhoods of ends with the largest limits, and list the rest as one piece."""
-        left, right = base_interval(strip, _END_WIDTH)
+        left, right = base_interval(strip)
         low, high = left[0], right[1]
         for at, end in ((left, strip.left), (right, strip.right)):
-            own = limits(strip, end, _END_WIDTH)
+            own = limits(strip, end)
             if own is None:
                 continue
             width = _width(Span(*own))
@@ -204,7 +205,7 @@ class _WidthSearch:
             if at[0] == at[1]:
                 length = chord_length(strip, at[0], 1 if end is strip.left else -1, own)
             if length is None:
-                length = narrowing_length(strip, end, _END_WIDTH)
+                length = narrowing_length(strip, end)
             if length is None:
                 continue
             self.add_at(end, width, own, self.attains(end, width, own))
@@ -258,7 +259,7 @@ class _WidthSearch:
                 width, strip = (self.known, -negative), piece.strip
                 ends = [strip.left] * piece.open_left + [strip.right] * piece.open_right
                 critical = next(
-                    (algebraic_number(end.root) for end in ends if end.root is not None), None
+                    (algebraic_number(end.root) for end in ends if end.critical is not None), None
                 )
                 # a continuous function on a closed interval, but for ends at which the line has
                 # another width
@@ -344,7 +345,7 @@ class _WidthSearch:
 
 def _width(span: Span) -> Interval:
     known = Span(
-        *(AlgebraicNumber.of(e).refined(to_fraction(_END_WIDTH)) for e in span.exact)
+        *(AlgebraicNumber.of(e).refined(to_fraction(RANGE_END_WIDTH)) for e in span.exact)
     ).width
     return interval_of(known)
 

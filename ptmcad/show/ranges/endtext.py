@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from fractions import Fraction
 
-from ptmcad.algebra.algebraic_numbers import refined
+from ptmcad.algebra.real_roots import refined
 from ptmcad.answer.intervals import AnyEnd, Span
 from ptmcad.text.enclosure import AlgebraicNumber, Enclosure
 from ptmcad.text.numerals import magnitude
