@@ -16,7 +16,7 @@ from time import perf_counter
 from ptmcad.algebra.algebraic_numbers import algebraic_number
 from ptmcad.algebra.real_roots import RealRoot, refine
 from ptmcad.answer.arrangement import correspondence
-from ptmcad.answer.changes import TOLERANCE, Change, Changes
+from ptmcad.answer.family import TOLERANCE, Change, Changes
 from ptmcad.ask.changewords import described
 from ptmcad.ask.classification import check_count
 from ptmcad.ask.engines import is_certified

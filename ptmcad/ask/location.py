@@ -17,8 +17,7 @@ from ptmcad.algebra.algebraic_numbers import root_of
 from ptmcad.algebra.polynomials import UnivariatePolynomial, coefficients_in, from_plane, univariate
 from ptmcad.algebra.real_roots import has_root_between, isolate, order, sign_at, squarefree_part
 from ptmcad.answer.consistency import contradiction
-from ptmcad.answer.location import Location
-from ptmcad.answer.regionmap import Component, Kind, RegionMap, Status
+from ptmcad.answer.regionmap import Component, Kind, Location, RegionMap, Status
 from ptmcad.answer.words import noun
 from ptmcad.cover import components
 from ptmcad.cover.rectangles import Cover

@@ -22,8 +22,7 @@ from itertools import count, pairwise, product
 from math import comb, lcm
 from typing import NamedTuple
 
-from ptmcad.question.signs import PROVED, Box, Corner, Interval, Verdict, Witness
-from ptmcad.question.slice import Axes
+from ptmcad.question.slice import PROVED, Axes, Box, Corner, Interval, Verdict, Witness
 from ptmcad.text.expressions import Expression, Term, polynomial_value
 from ptmcad.text.numerals import approximate_text
 

@@ -16,7 +16,7 @@ from ptmcad.model import Model, built_in
 from ptmcad.model.work import foreign, loads_at
 from ptmcad.question.counts import POSE_COLUMNS, Predicate
 from ptmcad.question.slice import merged
-from ptmcad.show.columns import WIDTH, aligned, wrapped
+from ptmcad.show.table import WIDTH, aligned, wrapped
 from ptmcad.show.units import declared_units
 from ptmcad.text.enclosure import Enclosure, exact_text
 

@@ -15,7 +15,7 @@ from typing import Any
 
 from ptmcad.answer.sweep import CountedArea, Member, State, Sweep, Widest
 from ptmcad.show import data
-from ptmcad.show.columns import aligned
+from ptmcad.show.table import aligned
 from ptmcad.text.numerals import fraction_of, shortest_text
 
 Members = Callable[[], Iterable[Member]]

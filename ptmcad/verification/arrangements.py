@@ -31,9 +31,8 @@ from itertools import count, pairwise
 from flint import fmpz_poly
 
 from ptmcad.answer.arrangement import Arrangement, correspondence
-from ptmcad.answer.changes import Changes
 from ptmcad.answer.counts import counted_by
-from ptmcad.answer.family import FamilyMap, SpaceTerms
+from ptmcad.answer.family import Changes, FamilyMap, SpaceTerms
 from ptmcad.answer.regionmap import Kind, Merge, RegionMap
 from ptmcad.errors import HypothesisError, shown
 from ptmcad.options import Progress

@@ -16,8 +16,7 @@ from pathlib import PurePath
 from typing import Any
 
 from ptmcad.answer.arrangement import SIDES, Arrangement
-from ptmcad.answer.changes import TOLERANCE, Changes
-from ptmcad.answer.family import FamilyMap, SpaceTerms
+from ptmcad.answer.family import TOLERANCE, Changes, FamilyMap, SpaceTerms
 from ptmcad.question.slice import Axis
 from ptmcad.show.document.exactnumbers import ALGEBRAIC, AXIS, LINE, NUMBER
 from ptmcad.text.codec import (

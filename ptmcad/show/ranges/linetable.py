@@ -14,8 +14,8 @@ from ptmcad.answer.intervals import AnyEnd, Change, CountIntervals, Span
 from ptmcad.answer.widths import Attainment, Maximum, OperationWidths, WidthRow
 from ptmcad.answer.words import sought
 from ptmcad.model import Model
-from ptmcad.show.columns import aligned
 from ptmcad.show.ranges.endtext import end_text, settled, width_text
+from ptmcad.show.table import aligned
 from ptmcad.text.enclosure import AlgebraicNumber, Enclosure
 from ptmcad.text.numerals import decimal, equalities, rounded, shortest_text
 from ptmcad.text.plane import PlanePolynomial

@@ -9,13 +9,22 @@ from collections.abc import Sequence
 
 from flint import arb, ctx
 
-from ptmcad.answer.branches import Branch, Branches, BranchPoint
-from ptmcad.answer.paths import Fate, PathEnd, PathPoint, PosePath, PosePaths, Target
+from ptmcad.answer.paths import (
+    Branch,
+    Branches,
+    BranchPoint,
+    Fate,
+    PathEnd,
+    PathPoint,
+    PosePath,
+    PosePaths,
+    Target,
+)
 from ptmcad.answer.words import assignments, followed, listed, noun, with_article
 from ptmcad.model import Model, built_in
 from ptmcad.model.work import acting
-from ptmcad.show.columns import aligned
 from ptmcad.show.ranges.endtext import end_text, known, narrowly_known, settled
+from ptmcad.show.table import aligned
 from ptmcad.show.units import with_unit
 from ptmcad.text.balls import ball_of, enclosure_of
 from ptmcad.text.enclosure import Enclosure

@@ -12,7 +12,6 @@ from functools import partial
 from operator import attrgetter
 from typing import Any
 
-from ptmcad.answer.branches import Branches
 from ptmcad.answer.counts import Counts, MorseIndex
 from ptmcad.answer.intervals import (
     AnyEnd,
@@ -23,7 +22,7 @@ from ptmcad.answer.intervals import (
     OperationSpan,
     Span,
 )
-from ptmcad.answer.paths import Fate, PathEnd, PathPoint, PosePath, PosePaths, Target
+from ptmcad.answer.paths import Branches, Fate, PathEnd, PathPoint, PosePath, PosePaths, Target
 from ptmcad.answer.regionmap import Kind
 from ptmcad.answer.widths import Attainment, OperationWidths, WidthRow
 from ptmcad.question.slice import Axis

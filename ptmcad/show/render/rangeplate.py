@@ -10,9 +10,8 @@ from typing import Any
 
 from matplotlib.figure import Figure
 
-from ptmcad.answer.branches import Branches
 from ptmcad.answer.intervals import End
-from ptmcad.answer.paths import PosePaths
+from ptmcad.answer.paths import Branches, PosePaths
 from ptmcad.question.slice import Axis, Slice
 from ptmcad.show.render.axes import heading_of, scale_of, symbol
 from ptmcad.show.render.inches import TITLE_LINE, Box, axes_at, titled, wrapped
