@@ -7,7 +7,7 @@ every digit. Which points are on one branch is taken from their nearness, and no
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from enum import Enum
 from fractions import Fraction
@@ -16,6 +16,7 @@ from ptmcad.answer import with_methods
 from ptmcad.model import Model
 from ptmcad.question.slice import Axis
 from ptmcad.text.enclosure import AlgebraicNumber, Enclosure
+from ptmcad.text.numerals import Numbers
 
 
 class Fate(Enum):
@@ -149,7 +150,7 @@ class PosePaths:
     name: str
     model: Model
     along: Axis
-    at: Mapping[str, Fraction]
+    at: Numbers
     start: Fraction
     paths: tuple[PosePath, ...]
     moved: tuple[str, ...] = ()
@@ -199,7 +200,7 @@ class Branches:
     name: str
     model: Model
     along: Axis
-    at: Mapping[str, Fraction]
+    at: Numbers
     quantities: tuple[str, ...]
     units: tuple[str, ...]
     branches: tuple[Branch, ...]

@@ -13,7 +13,7 @@ References: Farouki, "The Bernstein polynomial basis: a centennial retrospective
 section 4.
 """
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from enum import Enum
 from fractions import Fraction
 from functools import lru_cache
@@ -23,7 +23,7 @@ from math import comb, lcm
 from typing import NamedTuple
 
 from ptmcad.question.slice import PROVED, Axes, Box, Corner, Interval, Verdict, Witness
-from ptmcad.text.expressions import Expression, Term, polynomial_value
+from ptmcad.text.expressions import Expression, Terms, polynomial_value
 from ptmcad.text.numerals import approximate_text
 
 MAX_SPLITS = 400
@@ -31,6 +31,10 @@ MAX_WORK = 2_000_000
 """Additions of Bernstein coefficients; less than a second."""
 MAX_SHOWN = 10**40
 """Numerators and denominators from here on are shown rounded."""
+
+
+Row = tuple[int, ...]
+Rows = tuple[Row, ...]
 
 
 class Need(Enum):
@@ -101,7 +105,7 @@ class _Part(NamedTuple):
     """
 
     box: Box
-    rows: tuple[tuple[int, ...], ...]
+    rows: Rows
     shift: int
 
     def lowest(self) -> Fraction:
@@ -109,7 +113,7 @@ class _Part(NamedTuple):
         return Fraction(min(map(min, self.rows)), 1 << self.shift)
 
 
-def _decided(terms: tuple[Term, ...], window: Box, strict: bool) -> Verdict:
+def _decided(terms: Terms, window: Box, strict: bool) -> Verdict:
     """Whether a polynomial is positive, or not negative, in the open window."""
     if not terms:
         return Witness(middle_of(window), Fraction(0)) if strict else PROVED
@@ -194,7 +198,7 @@ def _halves(part: _Part) -> tuple[_Part, _Part]:
     return _Part(boxes[0], first, shift), _Part(boxes[1], second, shift)
 
 
-def _halved(row: Sequence[int]) -> tuple[tuple[int, ...], tuple[int, ...]]:
+def _halved(row: Row) -> tuple[Row, Row]:
     """De Casteljau's subdivision at the middle, times 2^degree."""
     degree = len(row) - 1
     left, right, sums = [row[0] << degree], [row[-1] << degree], list(row)
@@ -205,14 +209,12 @@ def _halved(row: Sequence[int]) -> tuple[tuple[int, ...], tuple[int, ...]]:
     return tuple(left), tuple(reversed(right))
 
 
-def _variation(rows: Sequence[Sequence[int]]) -> int:
+def _variation(rows: Rows) -> int:
     """The largest difference of two coefficients in a row."""
     return max(max(row) - min(row) for row in rows)
 
 
-def _integer_rows(
-    terms: tuple[Term, ...], window: Box
-) -> tuple[tuple[tuple[int, ...], ...], Fraction]:
+def _integer_rows(terms: Terms, window: Box) -> tuple[Rows, Fraction]:
     """Integers and a positive unit: the Bernstein coefficients on the window are the integers times
     the unit.
     """
@@ -221,7 +223,7 @@ def _integer_rows(
     return tuple(tuple(int(c * denominator) for c in row) for row in rows), Fraction(1, denominator)
 
 
-def bernstein(terms: tuple[Term, ...], box: Box) -> list[list[Fraction]]:
+def bernstein(terms: Terms, box: Box) -> list[list[Fraction]]:
     """The Bernstein coefficients of a polynomial on a box; row p belongs to the p-th basis function
     of the first axis.
 
@@ -265,7 +267,7 @@ def _power_in_bernstein(power: int, degree: int, interval: Interval) -> list[Fra
     ]
 
 
-def _times(terms: tuple[Term, ...], side: int) -> tuple[Term, ...]:
+def _times(terms: Terms, side: int) -> Terms:
     return tuple((i, j, side * c) for i, j, c in terms)
 
 

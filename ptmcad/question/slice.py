@@ -24,6 +24,8 @@ from ptmcad.model.evaluate import value_among
 from ptmcad.model.work import foreign, split_moments
 from ptmcad.question.counts import USUAL, Count
 from ptmcad.text.expressions import Expression, Expressions, constant
+from ptmcad.text.numerals import Texts
+from ptmcad.text.plane import Names
 
 QUANTITIES = ("length", "force")
 """Whose units a record may declare."""
@@ -156,12 +158,12 @@ class Slice:
     count: Count = USUAL
     title: str = ""
     reference: Mapping[str, Any] = field(default_factory=dict)
-    text: Mapping[str, str] = field(default_factory=dict)
-    units: Mapping[str, str] = field(default_factory=dict)
+    text: Texts = field(default_factory=dict)
+    units: Texts = field(default_factory=dict)
     signs: tuple[Finding, ...] = field(default=(), compare=False, repr=False)
 
     @property
-    def axis_names(self) -> tuple[str, str]:
+    def axis_names(self) -> Names:
         return (self.axes[0].name, self.axes[1].name)
 
     @property
@@ -338,14 +340,14 @@ class Point(tuple[Fraction, Fraction]):
     (Fraction(7, 10), Fraction(3, 2), {'rho': Fraction(7, 10), 'L2': Fraction(3, 2)})
     """
 
-    names: tuple[str, str]
+    names: Names
 
-    def __new__(cls, names: tuple[str, str], x: Fraction, y: Fraction) -> Point:
+    def __new__(cls, names: Names, x: Fraction, y: Fraction) -> Point:
         point = super().__new__(cls, (x, y))
         point.names = names
         return point
 
-    def __getnewargs__(self) -> tuple[tuple[str, str], Fraction, Fraction]:
+    def __getnewargs__(self) -> tuple[Names, Fraction, Fraction]:
         return (self.names, tuple.__getitem__(self, 0), tuple.__getitem__(self, 1))
 
     def keys(self) -> Iterator[str]:

@@ -13,7 +13,7 @@ from collections.abc import Callable, Iterable, Iterator
 from fractions import Fraction
 from typing import Any
 
-from ptmcad.answer.sweep import CountedArea, Member, State, Sweep, Widest
+from ptmcad.answer.sweep import Bounds, CountedArea, Member, State, Sweep, Widest
 from ptmcad.show import data
 from ptmcad.show.table import aligned
 from ptmcad.text.numerals import fraction_of, shortest_text
@@ -76,11 +76,11 @@ def _widest(found: Widest | None) -> str:
     )
 
 
-def _rounded(bounds: tuple[str, str]) -> str:
+def _rounded(bounds: Bounds) -> str:
     return f"{float(middle(bounds)):.4g}"
 
 
-def middle(bounds: tuple[str, str]) -> Fraction:
+def middle(bounds: Bounds) -> Fraction:
     """The middle of two bounds."""
     return (fraction_of(bounds[0]) + fraction_of(bounds[1])) / 2
 

@@ -21,8 +21,9 @@ from ptmcad.question.counts import Count
 from ptmcad.show.units import area_unit
 from ptmcad.text.enclosure import AlgebraicNumber
 from ptmcad.text.numerals import (
+    Bounds,
+    between,
     certified_digits,
-    decimal,
     interval_text,
     magnitude,
     percent,
@@ -71,7 +72,7 @@ def in_order(text: str) -> list[int]:
     return [int(number) for number in re.findall(r"\d+", text)]
 
 
-def area_text(result: RegionMap, bounds: tuple[Fraction, Fraction]) -> str:
+def area_text(result: RegionMap, bounds: Bounds) -> str:
     """An area as it is printed everywhere: one number of an exact map, both bounds of a certified
     one, and its unit.
     """
@@ -79,7 +80,7 @@ def area_text(result: RegionMap, bounds: tuple[Fraction, Fraction]) -> str:
     return f"{area_digits(result, bounds)} {known}" if known else area_digits(result, bounds)
 
 
-def area_digits(result: RegionMap, bounds: tuple[Fraction, Fraction]) -> str:
+def area_digits(result: RegionMap, bounds: Bounds) -> str:
     """The same without the unit."""
     return certified_digits(bounds) if result.cover is None else interval_text(bounds)
 
@@ -103,13 +104,13 @@ def region_area(result: RegionMap, number: int) -> str:
     )
 
 
-def area_by_count(result: RegionMap) -> dict[str, tuple[Fraction, Fraction]]:
+def area_by_count(result: RegionMap) -> dict[str, Bounds]:
     """Bounds of the area of the regions with each count, by the count's text.
 
     What is undetermined is a part of several bounds of a certified map, but in their sum once.
     """
     undetermined = result.undetermined * result.slice.area
-    areas: dict[str, list[tuple[Fraction, Fraction]]] = {}
+    areas: dict[str, list[Bounds]] = {}
     for region in result.regions:
         areas.setdefault(count_text(region, result.slice.count), []).append(region.area)
     found = {}
@@ -304,8 +305,7 @@ def value_text(change: Change) -> str:
     """The value with ten digits, or the two ends of its enclosure."""
     if isinstance(change.value, AlgebraicNumber):
         return change.value.text()
-    low, high = change.value.low, change.value.high
-    return f"{decimal(low, up=False, digits=_DIGITS)} to {decimal(high, up=True, digits=_DIGITS)}"
+    return between(change.value.low, change.value.high, _DIGITS)
 
 
 def _kind(change: Change) -> str:

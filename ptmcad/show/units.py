@@ -5,12 +5,11 @@ Guarantee: an axis has the unit of the parameters which are a number times it, o
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-
 from ptmcad.model import Model
 from ptmcad.model.elements import Unit
 from ptmcad.question.slice import Slice
 from ptmcad.text.expressions import Expressions, axis
+from ptmcad.text.numerals import Texts
 from ptmcad.text.parsing import parse
 from ptmcad.text.syntax import names_in
 
@@ -46,7 +45,7 @@ def unit(slice: Slice, axis: int) -> str:
     return _joined(slice, _quantities(slice, axis))
 
 
-def unit_of_free(slice: Slice, free: str, text: Mapping[str, str]) -> str:
+def unit_of_free(slice: Slice, free: str, text: Texts) -> str:
     """The same of a family's free parameter.
 
     Parameters
@@ -62,7 +61,7 @@ def unit_of_free(slice: Slice, free: str, text: Mapping[str, str]) -> str:
     return _joined(slice, _quantities_in(slice, {free: axis(0), **own}, (1, 0)))
 
 
-def energy_unit(model: Model, units: Mapping[str, str]) -> str:
+def energy_unit(model: Model, units: Texts) -> str:
     """The unit of a model's energies, such as ``kN·m``; in words as far as units are not declared,
     none of a system.
     """
@@ -70,18 +69,18 @@ def energy_unit(model: Model, units: Mapping[str, str]) -> str:
     return "".join(parts) if _declares(units, model.energy_unit) else " ".join(parts)
 
 
-def _declares(units: Mapping[str, str], quantities: Unit) -> bool:
+def _declares(units: Texts, quantities: Unit) -> bool:
     """Whether a record declares all units that these are made of, and there are any."""
     return bool(quantities) and all(part in units for part in quantities if part not in _SIGNS)
 
 
-def declared_units(model: Model, units: Mapping[str, str]) -> dict[str, str]:
+def declared_units(model: Model, units: Texts) -> dict[str, str]:
     """Of lengths, forces and energies, as far as a record declares them."""
     declared = _declares(units, model.energy_unit)
     return {**units, "energy": energy_unit(model, units)} if declared else {**units}
 
 
-def unit_of_unknown(model: Model, name: str, units: Mapping[str, str]) -> str:
+def unit_of_unknown(model: Model, name: str, units: Texts) -> str:
     """The unit of an unknown: degrees of an angle, and none of a number."""
     return "".join(units.get(part, part) for part in model.unit_of(name))
 

@@ -23,7 +23,7 @@ from ptmcad.show.polynomial_text import Style, polynomial_lines, symbols
 from ptmcad.text.codec import NATURAL, POSITIVE, TEXT, Codec, derived, listed, named, record_of
 from ptmcad.text.documents import document_text
 from ptmcad.text.numerals import text_of
-from ptmcad.text.plane import PlanePolynomial
+from ptmcad.text.plane import Names, PlanePolynomial
 from ptmcad.text.syntax import did_you_mean
 
 _CODE_WIDTH, _QEPCAD_WIDTH, _TEXT_WIDTH = 100, 90, 96
@@ -99,7 +99,7 @@ def qepcad(variety: SliceVariety) -> str:
     )
 
 
-def _condition(polynomial: PlanePolynomial, names: tuple[str, str], relation: str) -> str:
+def _condition(polynomial: PlanePolynomial, names: Names, relation: str) -> str:
     return (
         "\n  ".join(polynomial_lines(polynomial, names, Style.QEPCAD, _QEPCAD_WIDTH))
         + f" {relation}"
@@ -153,7 +153,7 @@ def window(variety: SliceVariety) -> str:
     return ", ".join(f"{text_of(a.low)} < {a.name} < {text_of(a.high)}" for a in variety.slice.axes)
 
 
-def describe(component: Component, names: tuple[str, str]) -> str:
+def describe(component: Component, names: Names) -> str:
     """Kind, degree, degrees in the axes and number of terms of a component, and why it is left out
     if it is.
     """
@@ -220,7 +220,7 @@ def document(variety: SliceVariety) -> str:
     return document_text(FORMAT, variety_codec(variety.slice.axis_names).write(variety))
 
 
-def variety_codec(names: tuple[str, str]) -> Codec[SliceVariety]:
+def variety_codec(names: Names) -> Codec[SliceVariety]:
     """The codec of a variety over axes of these names."""
     whole: dict[Any, Codec[Any]] = {PlanePolynomial: polynomial_over(names)}
     whole[Component] = record_of(

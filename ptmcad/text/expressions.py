@@ -19,9 +19,10 @@ from ptmcad.text.numerals import text_of
 from ptmcad.text.plane import plane_text
 
 Term = tuple[int, int, Fraction]
+Terms = tuple[Term, ...]
 _Polynomial = dict[tuple[int, int], Fraction]
 
-ONE: tuple[Term, ...] = ((0, 0, Fraction(1)),)
+ONE: Terms = ((0, 0, Fraction(1)),)
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,8 +43,8 @@ class Expression:
     numerator, denominator : terms ``(i, j, c)``, meaning c x^i y^j; an empty numerator is zero.
     """
 
-    numerator: tuple[Term, ...]
-    denominator: tuple[Term, ...] = ONE
+    numerator: Terms
+    denominator: Terms = ONE
 
     @property
     def is_constant(self) -> bool:
@@ -198,12 +199,12 @@ def axis(index: int) -> Expression:
     return Expression(((1, 0, Fraction(1)),) if index == 0 else ((0, 1, Fraction(1)),))
 
 
-def dict_of(terms: tuple[Term, ...]) -> dict[tuple[int, int], Fraction]:
+def dict_of(terms: Terms) -> dict[tuple[int, int], Fraction]:
     """Terms as a new dictionary from exponent pairs to coefficients."""
     return {(i, j): c for i, j, c in terms}
 
 
-def terms_of(polynomial: Mapping[tuple[int, int], Fraction]) -> tuple[Term, ...]:
+def terms_of(polynomial: Mapping[tuple[int, int], Fraction]) -> Terms:
     """A dictionary from exponent pairs to coefficients as sorted terms, zeros dropped."""
     return tuple((i, j, c) for (i, j), c in sorted(polynomial.items()) if c)
 
@@ -212,7 +213,7 @@ def _as_expression(value: Expression | Fraction | int) -> Expression:
     return value if isinstance(value, Expression) else constant(value)
 
 
-def polynomial_value(terms: tuple[Term, ...], x: Fraction, y: Fraction) -> Fraction:
+def polynomial_value(terms: Terms, x: Fraction, y: Fraction) -> Fraction:
     """The exact value of a polynomial."""
     total = Fraction(0)
     for i, j, c in terms:
@@ -223,14 +224,14 @@ def polynomial_value(terms: tuple[Term, ...], x: Fraction, y: Fraction) -> Fract
     return total
 
 
-def _sum(left: _Polynomial, right: tuple[Term, ...]) -> _Polynomial:
+def _sum(left: _Polynomial, right: Terms) -> _Polynomial:
     for i, j, c in right:
         power = (i, j)
         left[power] = left[power] + c if power in left else c
     return left
 
 
-def _product(left: tuple[Term, ...], right: tuple[Term, ...]) -> _Polynomial:
+def _product(left: Terms, right: Terms) -> _Polynomial:
     product: _Polynomial = {}
     for i, j, c in left:
         for m, n, d in right:

@@ -17,15 +17,13 @@ from ptmcad.question.config.scalars import names_in_scalar, number_of, parsed
 from ptmcad.question.slice import Slice
 from ptmcad.text.entry import Scalar
 from ptmcad.text.expressions import Expression, Expressions, constant
-from ptmcad.text.numerals import text_of
+from ptmcad.text.numerals import Numbers, text_of
 from ptmcad.text.parsing import rational
 from ptmcad.text.syntax import NOT_NUMBERS, did_you_mean, names_in, parse
 from ptmcad.text.tree import Number, Tree, names_of, replaced, to_text
 
 
-def with_numbers(
-    record: Record, numbers: Mapping[str, Fraction], places: Mapping[str, Place]
-) -> Record:
+def with_numbers(record: Record, numbers: Numbers, places: Mapping[str, Place]) -> Record:
     """The record with numbers as the values of parameters, and in place of other names in what it
     writes.
 
@@ -99,7 +97,7 @@ def settled(record: Record, given: Mapping[str, Scalar]) -> Record:
     return record._replace(values={**record.values, **left})
 
 
-def _with_numbers(scalar: Scalar, numbers: Mapping[str, Fraction]) -> Scalar:
+def _with_numbers(scalar: Scalar, numbers: Numbers) -> Scalar:
     """A text with numbers in it; what cannot be read or has no value stays as it is, to be refused
     with its place.
     """

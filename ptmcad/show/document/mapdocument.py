@@ -58,8 +58,8 @@ from ptmcad.text.codec import (
 )
 from ptmcad.text.documents import document_text
 from ptmcad.text.node import Node, opened
-from ptmcad.text.numerals import decimal
-from ptmcad.text.plane import PlanePolynomial
+from ptmcad.text.numerals import Bounds, decimal
+from ptmcad.text.plane import Names, PlanePolynomial
 
 FORMAT = "ptmcad-region-map/2"
 MAX_TEXT = 60_000_000
@@ -113,7 +113,7 @@ _WHERE_COUNTED = Key(NATURAL, default=None, entry_of="further")
 _STATUS = choice(Status).narrowed(enum=["exact", "certified", "partial", "undecided"])
 
 
-def _codec(names: tuple[str, str], certified: bool, slice: Slice | None = None) -> Codec[RegionMap]:
+def _codec(names: Names, certified: bool, slice: Slice | None = None) -> Codec[RegionMap]:
     """The codec of a map over axes of these names.
 
     Parameters
@@ -166,12 +166,12 @@ def _codec(names: tuple[str, str], certified: bool, slice: Slice | None = None) 
     )  # fmt: skip
 
 
-def _point(node: Node, names: tuple[str, str]) -> Point:
+def _point(node: Node, names: Names) -> Point:
     values = node.record(names, names)
     return Point(names, values[names[0]].fraction(), values[names[1]].fraction())
 
 
-def _axis(node: Node, names: tuple[str, str]) -> int:
+def _axis(node: Node, names: Names) -> int:
     if (name := node.text()) not in names:
         raise node.fault(f"is {name[:40]!r}, which is not an axis")
     return names.index(name)
@@ -191,7 +191,7 @@ def _null(node: Node) -> None:
 _NO_STACK: Codec[None] = Codec(lambda stack: stack, _null, {"type": "null"})
 
 
-def _outwards(area: tuple[Fraction, Fraction]) -> list[str]:
+def _outwards(area: Bounds) -> list[str]:
     return [decimal(area[0], up=False), decimal(area[1], up=True)]
 
 

@@ -23,7 +23,7 @@ from ptmcad.answer.paths import (
 from ptmcad.answer.words import assignments, followed, listed, noun, with_article
 from ptmcad.model import Model, built_in
 from ptmcad.model.work import acting
-from ptmcad.show.ranges.endtext import end_text, known, narrowly_known, settled
+from ptmcad.show.ranges.endtext import end_text, known, narrowly_known
 from ptmcad.show.table import aligned
 from ptmcad.show.units import with_unit
 from ptmcad.text.balls import ball_of, enclosure_of
@@ -135,12 +135,9 @@ def _end(end: PathEnd, found: PosePaths, digits: int) -> str:
         return f"{what}; the pose goes on, without a snap, as {target}"
     drop = None
     if end.energy is not None and end.target_energy is not None:
-        drop = settled(
-            Enclosure(
-                end.energy.low - end.target_energy.high, end.energy.high - end.target_energy.low
-            ),
-            5,
-        )
+        drop = Enclosure(
+            end.energy.low - end.target_energy.high, end.energy.high - end.target_energy.low
+        ).settled_text(5)
     heights = _heights(model)
     kind = f" ({_posture(end.target, heights)})" if heights else ""
     lower = drop or "an undecided amount"

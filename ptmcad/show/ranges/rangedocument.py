@@ -29,7 +29,7 @@ from ptmcad.question.slice import Axis
 from ptmcad.show.document.designdocument import maximum
 from ptmcad.show.document.exactnumbers import INDEX, with_decimal
 from ptmcad.show.document.slicedocument import VERSIONS
-from ptmcad.show.ranges.endtext import end_text, known, narrowly_known, settled, width_text
+from ptmcad.show.ranges.endtext import end_text, known, narrowly_known, width_text
 from ptmcad.text.codec import (
     COUNT,
     DATA,
@@ -73,7 +73,9 @@ def _exact(digits: int) -> Codec[Any]:
 
 def _enclosed(digits: int) -> Codec[Enclosure]:
     """The codec of an enclosed end, with a decimal of as many digits as are known."""
-    return record_of(Enclosure, decimal=derived(partial(settled, digits=digits), optional(TEXT)))
+    return record_of(
+        Enclosure, decimal=derived(lambda end: end.settled_text(digits), optional(TEXT))
+    )
 
 
 def _exact_places(digits: int) -> dict[Any, Codec[Any]]:
@@ -196,7 +198,7 @@ _POINTS: Known = {
     for kind in (PathPoint, Target)
 }
 _ENERGY: Codec[Any] = in_words(
-    lambda energy: energy and settled(energy, PATH_DIGITS), optional(TEXT)
+    lambda energy: energy and energy.settled_text(PATH_DIGITS), optional(TEXT)
 )
 _EXACT, _ENCLOSED = _exact(PATH_DIGITS), _enclosed(PATH_DIGITS)
 _ANY_END: Codec[Any] = Codec(
