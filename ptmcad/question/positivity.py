@@ -55,26 +55,27 @@ def decide(expression: Expression, axes: Axes, need: Need) -> Verdict:
     For `Need.POSITIVE` and `Need.NOT_NEGATIVE` the verdict holds where the denominator, as it is
     written, is not zero; ask for `Need.NO_POLE` too.
     """
-    window = window_of(axes)
+    window, asks_pole = window_of(axes), need is Need.NO_POLE
     middle = middle_of(window)
     denominator = polynomial_value(expression.denominator, *middle)
     if denominator == 0:
-        return Witness(middle, denominator) if need is Need.NO_POLE else (window,)
+        return Witness(middle, denominator) if asks_pole else (window,)
     side = 1 if denominator > 0 else -1
-    if need is Need.NO_POLE:
-        verdict = _decided(_times(expression.denominator, side), window, True)
-        if isinstance(verdict, Witness):
-            other = middle if verdict.value < 0 else None
-            return Witness(verdict.point, side * verdict.value, other)
+    terms = expression.denominator if asks_pole else expression.numerator
+    signed = tuple((i, j, side * c) for i, j, c in terms)
+    verdict = _decided(signed, window, need is not Need.NOT_NEGATIVE)
+    if not isinstance(verdict, Witness):
         return verdict
-    verdict = _decided(_times(expression.numerator, side), window, need is Need.POSITIVE)
-    if isinstance(verdict, Witness) and verdict.value:
-        denominator = polynomial_value(expression.denominator, *verdict.point)
-        if denominator == 0:
-            x, y = verdict.point
-            return (((x, x), (y, y)),)
-        return Witness(verdict.point, side * verdict.value / denominator)
-    return verdict
+    point, value = verdict.point, side * verdict.value
+    if asks_pole:
+        return Witness(point, value, middle if verdict.value < 0 else None)
+    if value == 0:
+        return verdict
+    denominator = polynomial_value(expression.denominator, *point)
+    if denominator == 0:
+        x, y = point
+        return (((x, x), (y, y)),)
+    return Witness(point, value / denominator)
 
 
 def place(verdict: Verdict, axes: Axes) -> str:
@@ -117,7 +118,9 @@ def _decided(terms: Terms, window: Box, strict: bool) -> Verdict:
     """Whether a polynomial is positive, or not negative, in the open window."""
     if not terms:
         return Witness(middle_of(window), Fraction(0)) if strict else PROVED
-    rows, scale = _integer_rows(terms, window)
+    exact = bernstein(terms, window)
+    denominator = lcm(*(c.denominator for row in exact for c in row))
+    rows = tuple(tuple(int(c * denominator) for c in row) for row in exact)
     cost = max(1, len(rows) * len(rows[0]) * max(len(rows), len(rows[0])) // 2)
     whole = _Part(window, rows, 0)
     order = count()
@@ -126,7 +129,7 @@ def _decided(terms: Terms, window: Box, strict: bool) -> Verdict:
     def look(part: _Part) -> Witness | None:
         for point, value in _inner_corners(part, window):
             if value < 0 or (strict and value == 0):
-                return Witness(point, value * scale)
+                return Witness(point, value / denominator)
         if not _is_proved(part, window, strict):
             heappush(waiting, (part.lowest(), next(order), part))
         return None
@@ -214,15 +217,6 @@ def _variation(rows: Rows) -> int:
     return max(max(row) - min(row) for row in rows)
 
 
-def _integer_rows(terms: Terms, window: Box) -> tuple[Rows, Fraction]:
-    """Integers and a positive unit: the Bernstein coefficients on the window are the integers times
-    the unit.
-    """
-    rows = bernstein(terms, window)
-    denominator = lcm(*(c.denominator for row in rows for c in row))
-    return tuple(tuple(int(c * denominator) for c in row) for row in rows), Fraction(1, denominator)
-
-
 def bernstein(terms: Terms, box: Box) -> list[list[Fraction]]:
     """The Bernstein coefficients of a polynomial on a box; row p belongs to the p-th basis function
     of the first axis.
@@ -265,10 +259,6 @@ def _power_in_bernstein(power: int, degree: int, interval: Interval) -> list[Fra
         )
         for p in range(degree + 1)
     ]
-
-
-def _times(terms: Terms, side: int) -> Terms:
-    return tuple((i, j, side * c) for i, j, c in terms)
 
 
 def window_of(axes: Axes) -> Box:

@@ -47,7 +47,7 @@ def table(poses: Poses, digits: int | None = None) -> str:
         *wrapped("result", _summary(poses)),
     ]
     for block in _blocks(poses, shown):
-        lines += ["", *aligned([*zip(*block, strict=True)], str.rjust)]
+        lines += ["", *aligned([*zip(*block, strict=True)], right=len(block))]
     if poses.equilibria:
         notes = {"units": _units(poses), "energy": [_energy_note(poses)]}
         notes |= {label: [note] for label, note in poses.equilibria[0].notes.items()}

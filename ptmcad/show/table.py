@@ -10,7 +10,7 @@ from __future__ import annotations
 import re
 import textwrap
 from collections import Counter
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Iterable, Sequence
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
@@ -30,21 +30,22 @@ from ptmcad.text.numerals import (
     shortest_text,
 )
 
-if TYPE_CHECKING:  # a map of the exact engine has no cover, and most maps are in no family
+if TYPE_CHECKING:  # most maps are in no family
     from ptmcad.answer.family import Change, Changes, FamilyMap
-    from ptmcad.cover.rectangles import Cover
 
 
 WIDTH = 100
 """Characters of a line."""
 
 
-def aligned(
-    rows: Sequence[Sequence[str]], justified: Callable[[str, int], str] = str.ljust
-) -> list[str]:
-    """Rows as lines with columns of equal width."""
+def aligned(rows: Sequence[Sequence[str]], right: int = 0) -> list[str]:
+    """Rows as lines with columns of equal width; so many of them, from the left, end where their
+    longest entry does.
+    """
     widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
-    return ["  ".join(map(justified, row, widths)).rstrip() for row in rows]
+    sides = [str.rjust] * right + [str.ljust] * (len(widths) - right)
+    lines = (zip(sides, row, widths, strict=True) for row in rows)
+    return ["  ".join(side(text, width) for side, text, width in line).rstrip() for line in lines]
 
 
 def wrapped(label: str, parts: Sequence[str], separator: str = ", ") -> list[str]:
@@ -132,6 +133,10 @@ def _short(value: Fraction) -> str:
 
 
 def _curves(result: RegionMap) -> str:
+    """The boundary curves with their degrees, or the size of the cover."""
+    if result.cover is not None:
+        rectangles = several(len(result.cover.rectangles), "rectangle")
+        return f"cover     {rectangles} around the curves where counts change"
     names = result.slice.axis_names
     alike = Counter(
         (c.kind.value, c.polynomial.degrees, len(c.polynomial.terms))
@@ -149,11 +154,6 @@ def _curves(result: RegionMap) -> str:
         for n, found in result.continua.items()
     ]
     return "\n".join(lines)
-
-
-def _covered(cover: Cover) -> str:
-    rectangles = several(len(cover.rectangles), "rectangle")
-    return f"cover     {rectangles} around the curves where counts change"
 
 
 def _time(result: RegionMap) -> str:
@@ -204,7 +204,7 @@ def table(result: RegionMap) -> str:
             f"counts    {counts or 'none yet'}",
             f"areas     {areas or 'none yet'}",
             *(f"stable    {words}" for words in [stability_in_words(result)] if words),
-            _curves(result) if result.cover is None else _covered(result.cover),
+            _curves(result),
             *_vanishing(result),
             f"time      {_time(result)}; {wrong}; {bound}",
         ]
@@ -242,26 +242,21 @@ def _vanishing(result: RegionMap) -> list[str]:
 
 def family_table(family: FamilyMap) -> str:
     """Value of the free parameter, regions, cells and areas of each member, and the surfaces."""
-    values = [shortest_text(value) for value in family.values]
-    width = max(len(family.free.name), *(len(value) for value in values))
-    lines = [f"{family.free.name:>{width}}  regions  cells  areas by count"]
-    for value, result in zip(values, family.members, strict=True):
-        lines.append(
-            f"{value:>{width}}  {len(result.regions):>7}  {len(result.cells):>5}  {_areas(result)}"
-        )
+    rows = [[family.free.name, "regions", "cells", "areas by count"]]
+    for value, result in family:
+        numbers = map(str, map(len, (result.regions, result.cells)))
+        rows.append([shortest_text(value), *numbers, _areas(result)])
+    lines = aligned(rows, right=3)
     if family.surfaces:
         sizes = ", ".join(
-            f"{several(len(terms), 'term')} of degree {_degree(terms)}" for terms in family.surfaces
+            f"{several(len(terms), 'term')} of degree {max(sum(powers) for powers, _ in terms)}"
+            for terms in family.surfaces
         )
         many = "surfaces" if len(family.surfaces) > 1 else "surface"
         lines.append(f"computed once for all: {many} where solutions meet, {sizes}")
     if family.changes is not None:
         lines.append(changes_table(family.changes))
     return "\n".join(lines)
-
-
-def _degree(terms: tuple[tuple[tuple[int, int, int], int], ...]) -> int:
-    return max(sum(powers) for powers, _ in terms)
 
 
 def _areas(result: RegionMap) -> str:
@@ -280,14 +275,12 @@ def changes_table(found: Changes) -> str:
     """Value, how it is known, and what changes, line by line; then what is known of completeness."""
     free = found.free
     title = f"changes of the arrangement for {free.name} between {shortest_text(free.low)} and {shortest_text(free.high)}"
-    rows = [(value_text(change), _kind(change), change.words) for change in found.changes]
-    width = max((len(value) for value, _, _ in rows), default=0)
-    cells = [
-        ["", "" if number else value.rjust(width), "" if number else kind, text]
-        for value, kind, words in rows
-        for number, text in enumerate(words)
+    rows = [
+        ["", *(("", "") if number else (value_text(change), _kind(change))), text]
+        for change in found
+        for number, text in enumerate(change.words)
     ]
-    lines = [f"{title}: {len(rows) or 'none'}", *aligned(cells)]
+    lines = [f"{title}: {len(found) or 'none'}", *aligned(rows, right=2)]
     for end, words in zip((free.low, free.high), found.at_ends, strict=True):
         if words:
             lines.append(f"  at {free.name} = {shortest_text(end)} itself: {'; '.join(words)}")

@@ -58,7 +58,7 @@ from ptmcad.text.codec import (
 )
 from ptmcad.text.documents import document_text
 from ptmcad.text.node import Node, opened
-from ptmcad.text.numerals import Bounds, decimal
+from ptmcad.text.numerals import decimal
 from ptmcad.text.plane import Names, PlanePolynomial
 
 FORMAT = "ptmcad-region-map/2"
@@ -142,11 +142,9 @@ def _codec(names: Names, certified: bool, slice: Slice | None = None) -> Codec[R
     }  # fmt: skip
     # an area that a checker is to confirm needs no more digits; one that is a sum of rectangles is
     # exact as it is
-    area: Codec[Any] = (
-        listed(SHARE, 2)
-        if certified
-        else Codec(_outwards, listed(SHARE, 2).read, listed(SHARE, 2).schema)
-    )
+    area: Codec[Any] = listed(SHARE, 2)
+    if not certified:
+        area = area._replace(write=lambda ends: [decimal(ends[0], False), decimal(ends[1], True)])
     known[Status] = _STATUS
     known[Component] = record_of(Component, known, **unless_default(Component, "continuum"))
     predicates = {
@@ -189,10 +187,6 @@ def _null(node: Node) -> None:
 
 
 _NO_STACK: Codec[None] = Codec(lambda stack: stack, _null, {"type": "null"})
-
-
-def _outwards(area: Bounds) -> list[str]:
-    return [decimal(area[0], up=False), decimal(area[1], up=True)]
 
 
 def schema() -> Mapping[str, Any]:

@@ -124,13 +124,8 @@ def _range_text(interval: Span, digits: int) -> str:
     edges = [
         side for side, end in (("lower", interval.low), ("upper", interval.high)) if _is_edge(end)
     ]
-    note = ""
-    if edges:
-        note = (
-            f" (its {edges[0]} end is the window's edge)"
-            if len(edges) == 1
-            else " (the whole window)"
-        )
+    notes = ("", " (its {} end is the window's edge)", " (the whole window)")
+    note = notes[len(edges)].format(*edges)
     low, high = _side_text(interval.low, digits, up=True), _side_text(interval.high, digits)
     return f"{low} to {high}, width {width_text(interval, digits)}{note}"
 
