@@ -122,26 +122,19 @@ def _decided(terms: Terms, window: Box, strict: bool) -> Verdict:
     denominator = lcm(*(c.denominator for row in exact for c in row))
     rows = tuple(tuple(int(c * denominator) for c in row) for row in exact)
     cost = max(1, len(rows) * len(rows[0]) * max(len(rows), len(rows[0])) // 2)
-    whole = _Part(window, rows, 0)
     order = count()
     waiting: list[tuple[Fraction, int, _Part]] = []
-
-    def look(part: _Part) -> Witness | None:
-        for point, value in _inner_corners(part, window):
-            if value < 0 or (strict and value == 0):
-                return Witness(point, value / denominator)
-        if not _is_proved(part, window, strict):
-            heappush(waiting, (part.lowest(), next(order), part))
-        return None
-
-    if (witness := look(whole)) is not None:
-        return witness
-    for _ in range(min(MAX_SPLITS, MAX_WORK // cost)):
-        if not waiting:
+    fresh: tuple[_Part, ...] = (_Part(window, rows, 0),)
+    for splits in range(min(MAX_SPLITS, MAX_WORK // cost), -1, -1):
+        for part in fresh:
+            for point, value in _inner_corners(part, window):
+                if value < 0 or (strict and value == 0):
+                    return Witness(point, value / denominator)
+            if not _is_proved(part, window, strict):
+                heappush(waiting, (part.lowest(), next(order), part))
+        if not (splits and waiting):
             break
-        for half in _halves(heappop(waiting)[2]):
-            if (witness := look(half)) is not None:
-                return witness
+        fresh = _halves(heappop(waiting)[2])
     return tuple(part.box for _, _, part in sorted(waiting, key=lambda w: w[:2]))
 
 

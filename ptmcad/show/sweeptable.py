@@ -15,7 +15,7 @@ from typing import Any
 
 from ptmcad.answer.sweep import Bounds, CountedArea, Member, State, Sweep
 from ptmcad.show import data
-from ptmcad.show.table import aligned
+from ptmcad.show.table import aligned, in_order
 from ptmcad.text.numerals import fraction_of, shortest_text
 
 Members = Callable[[], Iterable[Member]]
@@ -90,12 +90,7 @@ def csv_text(sweep: Sweep, members: Members) -> str:
 def counts_in(members: Iterable[Member]) -> tuple[str, ...]:
     """The counts of regions that occur in any member, in increasing order."""
     found = {area.count for member in members if member.summary for area in member.summary.areas}
-    return tuple(sorted(found, key=count_order))
-
-
-def count_order(count: str) -> tuple[int, ...]:
-    """What counts are sorted by."""
-    return (-1,) if count == "?" else tuple(map(int, count.split("-")))
+    return tuple(sorted(found, key=in_order))
 
 
 def columns(sweep: Sweep, counts: Iterable[str]) -> list[str]:

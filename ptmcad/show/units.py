@@ -34,15 +34,15 @@ def _quantities_in(slice: Slice, parameters: Expressions, exponents: tuple[int, 
     return found.pop() if len(found) == 1 else ()
 
 
-def _joined(slice: Slice, quantities: Unit) -> str:
-    return "".join(slice.units.get(part, part) for part in quantities)
+def _joined(units: Texts, quantities: Unit, between: str = "") -> str:
+    return between.join(units.get(part, part) for part in quantities)
 
 
 def unit(slice: Slice, axis: int) -> str:
     """The unit of an axis, such as ``mm``, or ``length`` where the record declares none; empty when
     not known.
     """
-    return _joined(slice, _quantities(slice, axis))
+    return _joined(slice.units, _quantities(slice, axis))
 
 
 def unit_of_free(slice: Slice, free: str, text: Texts) -> str:
@@ -58,15 +58,14 @@ def unit_of_free(slice: Slice, free: str, text: Texts) -> str:
         for name, written in text.items()
         if names_in(written) == (free,)
     }
-    return _joined(slice, _quantities_in(slice, {free: axis(0), **own}, (1, 0)))
+    return _joined(slice.units, _quantities_in(slice, {free: axis(0), **own}, (1, 0)))
 
 
 def energy_unit(model: Model, units: Texts) -> str:
     """The unit of a model's energies, such as ``kN·m``; in words as far as units are not declared,
     none of a system.
     """
-    parts = [units.get(part, part) for part in model.energy_unit]
-    return "".join(parts) if _declares(units, model.energy_unit) else " ".join(parts)
+    return _joined(units, model.energy_unit, " " * (not _declares(units, model.energy_unit)))
 
 
 def _declares(units: Texts, quantities: Unit) -> bool:
@@ -82,7 +81,7 @@ def declared_units(model: Model, units: Texts) -> dict[str, str]:
 
 def unit_of_unknown(model: Model, name: str, units: Texts) -> str:
     """The unit of an unknown: degrees of an angle, and none of a number."""
-    return "".join(units.get(part, part) for part in model.unit_of(name))
+    return _joined(units, model.unit_of(name))
 
 
 def with_unit(name: str, unit: str) -> str:

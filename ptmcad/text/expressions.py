@@ -12,6 +12,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from fractions import Fraction
+from functools import reduce
 from math import gcd, lcm
 
 from ptmcad.errors import ExpressionError, PoleError
@@ -147,21 +148,12 @@ class Expression:
         )
 
     def __pow__(self, exponent: int) -> Expression:
-        if self.is_constant:
-            base = self.constant()
-            if base == 0 and exponent < 0:
-                raise ExpressionError("division by zero")
-            return constant(base**exponent)
         if exponent < 0:
-            return (constant(1) / self) ** -exponent
-        result, square = constant(1), self
-        while exponent:
-            if exponent & 1:
-                result = result * square
-            exponent >>= 1
-            if exponent:
-                square = square * square
-        return result
+            return constant(1) / self**-exponent
+        if self.is_constant:
+            return constant(self.constant() ** exponent)
+        # powers of a normal form are in normal form
+        return Expression(_power(self.numerator, exponent), _power(self.denominator, exponent))
 
     __radd__, __rmul__ = __add__, __mul__
 
@@ -238,6 +230,10 @@ def _product(left: Terms, right: Terms) -> _Polynomial:
             power = (i + m, j + n)
             product[power] = product[power] + c * d if power in product else c * d
     return product
+
+
+def _power(terms: Terms, exponent: int) -> Terms:
+    return reduce(lambda found, _: terms_of(_product(found, terms)), range(exponent), ONE)
 
 
 def _reduced(numerator: _Polynomial, denominator: _Polynomial) -> Expression:

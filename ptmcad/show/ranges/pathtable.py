@@ -26,7 +26,7 @@ from ptmcad.model.work import acting
 from ptmcad.show.ranges.endtext import end_text, known, narrowly_known
 from ptmcad.show.table import aligned
 from ptmcad.show.units import with_unit
-from ptmcad.text.balls import ball_of, enclosure_of
+from ptmcad.text.balls import ball_over, enclosure_of
 from ptmcad.text.enclosure import Enclosure
 from ptmcad.text.numerals import equalities, shortest_text
 
@@ -192,6 +192,6 @@ def degrees(angle: Enclosure, digits: int) -> str:
     distinguished from it.
     """
     with ctx.workprec(200):
-        ball = ball_of(angle.low).union(ball_of(angle.high)) * 180 / arb.pi()
+        ball = ball_over(angle.low, angle.high) * 180 / arb.pi()
         text = narrowly_known(enclosure_of(ball), digits)
     return UNDECIDED if text is None else f"{text}°"
