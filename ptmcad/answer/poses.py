@@ -282,8 +282,6 @@ class Poses:
         @classmethod
         def from_json(cls, text: str) -> Poses: ...
 
-        def _repr_html_(self) -> str: ...
-
 
 DIGITS = 12
 MAX_DIGITS = 1000
