@@ -15,9 +15,8 @@ TYPE_CHECKING = False  # type checkers take it for true; the module typing would
 if TYPE_CHECKING:
     from typing import Any
 
-    from ptmcad.answer.changes import Change, Changes
     from ptmcad.answer.design import BestDesign
-    from ptmcad.answer.family import FamilyMap
+    from ptmcad.answer.family import Change, Changes, FamilyMap
     from ptmcad.answer.poses import Pose, Poses
     from ptmcad.answer.regionmap import RegionMap
     from ptmcad.answer.slicevariety import SliceVariety
@@ -52,8 +51,8 @@ _HOMES = {
     "AlgebraicNumber": "text.enclosure",
     "Enclosure": "text.enclosure",
     "changes": "ask.changes",
-    "Change": "answer.changes",
-    "Changes": "answer.changes",
+    "Change": "answer.family",
+    "Changes": "answer.family",
     "classify": "ask.classification",
     "BestDesign": "answer.design",
     "design": "workbench.designs.bestdesign",

@@ -332,7 +332,7 @@ METHODS |= {
     "Comparison": {"_repr_html_": "show.notebook:comparison_html"},
     "Motion": {"save": _motion_save, "_repr_html_": "show.notebook:motion_html"},
     "FamilyMap": {
-        "table": "show.familytable:family_table",
+        "table": "show.table:family_table",
         "plot": _family_plot,
         "boundary_surface": "workbench.boundarymesh:boundary_surface",
         "_repr_html_": "show.notebook:family_html",
@@ -351,8 +351,8 @@ METHODS |= {
         "_repr_html_": "show.notebook:design_html",
     },
     "Changes": {
-        "table": "show.familytable:changes_table",
-        "_repr_html_": _html_by("show.familytable:changes_table"),
+        "table": "show.table:changes_table",
+        "_repr_html_": _html_by("show.table:changes_table"),
     },
     "Sweep": {
         "__iter__": "workbench.sweeps.index:members",

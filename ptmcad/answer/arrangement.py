@@ -71,9 +71,9 @@ def _first_colours(a: Arrangement) -> Colours:
 
 def _matched(graphs: list[list[list[int]]], colours: list[Colours]) -> tuple[int, ...] | None:
     first, second = _refined(graphs, colours)
-    if Counter(first) != Counter(second):
-        return None
     sizes = Counter(first)
+    if sizes != Counter(second):
+        return None
     if len(sizes) == len(first):
         # regions of one colour have neighbours of the same colours: what keeps colours keeps
         # neighbours

@@ -104,9 +104,3 @@ class Grid:
     def __repr__(self) -> str:
         rows, columns = self.region.shape
         return f"<Grid of {columns} x {rows} pixels over {self.names[0]}, {self.names[1]}>"
-
-    if TYPE_CHECKING:  # `ptmcad.methods` has them
-
-        def _repr_html_(self) -> str: ...
-
-        def _repr_png_(self) -> bytes: ...

@@ -87,9 +87,3 @@ class Field:
     def __repr__(self) -> str:
         rows, columns = self.values.shape
         return f"<Field {self.quantity} of {self.pose}, {columns} x {rows} pixels over {self.names[0]}, {self.names[1]}>"
-
-    if TYPE_CHECKING:  # `ptmcad.methods` has them
-
-        def _repr_html_(self) -> str: ...
-
-        def _repr_png_(self) -> bytes: ...

@@ -20,7 +20,7 @@ from ptmcad.model.criterion import critical_point
 from ptmcad.question.slice import Axis
 from ptmcad.text.enclosure import AlgebraicNumber, Enclosure
 from ptmcad.text.expressions import Expressions
-from ptmcad.text.numerals import Numbers
+from ptmcad.text.numerals import Bounds, Numbers
 
 End = AlgebraicNumber | Fraction
 """A critical value, or the window's edge."""
@@ -245,7 +245,7 @@ class CountIntervals:
         )
 
     @property
-    def stretches(self) -> list[tuple[Fraction, Fraction]]:
+    def stretches(self) -> list[Bounds]:
         """Intervals without a critical value, between rational numbers, from the lower edge to the
         upper one.
         """

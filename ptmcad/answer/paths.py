@@ -1,10 +1,13 @@
 """Paths of stable poses along a line, as data: how far each one can be followed, and where it snaps
-to.
+to; and branches of all solutions, a bifurcation diagram of some quantities.
+
+Guarantee: at each point of a branch the solutions are all there are, and each number is right in
+every digit. Which points are on one branch is taken from their nearness, and no claim.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from enum import Enum
 from fractions import Fraction
@@ -13,6 +16,7 @@ from ptmcad.answer import with_methods
 from ptmcad.model import Model
 from ptmcad.question.slice import Axis
 from ptmcad.text.enclosure import AlgebraicNumber, Enclosure
+from ptmcad.text.numerals import Numbers
 
 
 class Fate(Enum):
@@ -146,10 +150,58 @@ class PosePaths:
     name: str
     model: Model
     along: Axis
-    at: Mapping[str, Fraction]
+    at: Numbers
     start: Fraction
     paths: tuple[PosePath, ...]
     moved: tuple[str, ...] = ()
 
     def __repr__(self) -> str:
         return f"<PosePaths of {self.name} along {self.along.name}: {len(self.paths)} from {self.start}>"
+
+
+@dataclass(frozen=True, slots=True)
+class BranchPoint:
+    """A solution at a value of the axis: the quantities, in their order; None for one that it does
+    not have.
+    """
+
+    value: Fraction
+    numbers: tuple[Enclosure | None, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Branch:
+    """One solution between two critical values.
+
+    Attributes
+    ----------
+    stable : None where nothing says what is stable.
+    index : the number of negative eigenvalues; None without a potential.
+    points : in increasing order of the axis.
+    """
+
+    stable: bool | None
+    index: int | None
+    points: tuple[BranchPoint, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Branches:
+    """The answer of ``--quantity``.
+
+    Attributes
+    ----------
+    quantities : their names as they were asked for.
+    units : of each, as the record declares it or in words; empty for one that has none of its own.
+    undecided : values of the axis at which not all solutions could be separated; there the
+        branches have gaps.
+    """
+
+    name: str
+    model: Model
+    along: Axis
+    at: Numbers
+    quantities: tuple[str, ...]
+    units: tuple[str, ...]
+    branches: tuple[Branch, ...]
+    undecided: tuple[Fraction, ...] = ()

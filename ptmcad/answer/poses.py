@@ -17,6 +17,7 @@ from ptmcad.answer.regionmap import Status
 from ptmcad.model import Model
 from ptmcad.question.counts import Count
 from ptmcad.text.enclosure import Enclosure
+from ptmcad.text.numerals import Texts
 
 Vector = tuple[Enclosure, Enclosure]
 
@@ -136,7 +137,7 @@ class Pose:
         return self.further.get(Count.ADMISSIBLE.value)
 
     @property
-    def notes(self) -> Mapping[str, str]:
+    def notes(self) -> Texts:
         """What words of its quantities stand for."""
         return {"torsion": _TORSION} if self.torsion else {}
 
@@ -237,7 +238,7 @@ class Poses:
     digits: int
     bits: int
     remark: str = ""
-    units: Mapping[str, str] = field(default_factory=dict)
+    units: Texts = field(default_factory=dict)
     undecided: int = 0
 
     @property
@@ -280,8 +281,6 @@ class Poses:
 
         @classmethod
         def from_json(cls, text: str) -> Poses: ...
-
-        def _repr_html_(self) -> str: ...
 
 
 DIGITS = 12

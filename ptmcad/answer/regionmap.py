@@ -7,7 +7,7 @@ gives an equal map.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from enum import Enum
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -24,7 +24,6 @@ if TYPE_CHECKING:
     from ptmcad.answer.boundaries import Boundary, Grid
     from ptmcad.answer.comparison import Comparison
     from ptmcad.answer.field import Field
-    from ptmcad.answer.location import Location
     from ptmcad.answer.motion import Motion
     from ptmcad.cover.rectangles import Cover
 
@@ -312,6 +311,25 @@ class Region(Counted):
         return f"<Region {_counts_in_words(self)}, {len(self.cells)} cells, area {area}>"
 
 
+@dataclass(frozen=True, slots=True)
+class Location(Counted):
+    """Where a point lies; region, cell and counts are None unless the point is decided and in a
+    cell.
+
+    A point on a curve that no count feels has counts of its own, and the region on both sides; it
+    is in no cell.
+    """
+
+    status: Status
+    region: int | None = None
+    cell: int | None = None
+    total: int | None = None
+    stable: int | None = None
+    index: MorseIndex | None = None
+    further: Mapping[str, int] = field(default_factory=dict)
+    remark: str = ""
+
+
 class PlanStep(NamedTuple):
     """One decision of the plan: what, whether it is done or left out, and why.
 
@@ -410,12 +428,6 @@ class RegionMap:
 
         def to_dataframe(self, what: str = "regions", **options: Any) -> DataFrame: ...
 
-        def _repr_html_(self) -> str: ...
-
-        def _repr_svg_(self) -> str | None: ...
-
-        def _repr_png_(self) -> bytes | None: ...
-
         def compare(self, other: RegionMap) -> Comparison: ...
 
         def animate(self, path: Any, pose: str = "stable:1", frames: int = 90) -> Motion: ...
@@ -431,3 +443,14 @@ class RegionMap:
             dpi: int = 150,
             **options: Any,
         ) -> Any: ...
+
+
+COMPILATION = "compilation"
+"""The timing, besides those of stages, of what was compiled before the computation: once on a
+machine.
+"""
+
+
+def with_compilation(result: RegionMap, seconds: float) -> RegionMap:
+    """The map with the seconds that its run has spent compiling, if any, besides its own."""
+    return replace(result, timings={**result.timings, COMPILATION: seconds}) if seconds else result

@@ -79,8 +79,6 @@ class SliceVariety:
 
         def text(self, format: str = "text") -> str: ...
 
-        def _repr_html_(self) -> str: ...
-
     def __str__(self) -> str:
         return self.text()
 

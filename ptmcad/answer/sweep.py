@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING
 from ptmcad.answer import with_methods
 from ptmcad.answer.widths import Attainment
 from ptmcad.errors import ConfigError
-from ptmcad.text.numerals import equalities
+from ptmcad.text.numerals import Texts, equalities
 
 if TYPE_CHECKING:
     from pandas import DataFrame
@@ -112,7 +112,7 @@ class Member:
     """
 
     number: int
-    parameters: Mapping[str, str]
+    parameters: Texts
     state: State
     summary: Summary | None = None
     same_as: int | None = None
@@ -175,5 +175,3 @@ class Sweep:
         def to_csv(self) -> str: ...
 
         def to_dataframe(self) -> DataFrame: ...
-
-        def _repr_html_(self) -> str: ...

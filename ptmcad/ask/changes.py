@@ -15,7 +15,7 @@ from time import perf_counter
 
 from ptmcad.algebra.real_roots import RealRoot, algebraic_number, refine
 from ptmcad.answer.arrangement import correspondence
-from ptmcad.answer.changes import TOLERANCE, Change, Changes
+from ptmcad.answer.family import TOLERANCE, Change, Changes
 from ptmcad.ask.changewords import described
 from ptmcad.ask.classification import check_count
 from ptmcad.ask.members import AskedFamily, Common, in_common, in_space

@@ -17,8 +17,7 @@ from importlib import import_module
 from time import perf_counter
 from typing import TYPE_CHECKING
 
-from ptmcad.answer.regionmap import RegionMap, Status
-from ptmcad.answer.timings import with_compilation
+from ptmcad.answer.regionmap import RegionMap, Status, with_compilation
 from ptmcad.errors import ConfigError, LimitReached, expect, quoted
 from ptmcad.model import ptm
 from ptmcad.model.description import looped

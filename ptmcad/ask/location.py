@@ -24,8 +24,7 @@ from ptmcad.algebra.real_roots import (
     squarefree_part,
 )
 from ptmcad.answer.consistency import contradiction
-from ptmcad.answer.location import Location
-from ptmcad.answer.regionmap import Component, Kind, RegionMap, Status
+from ptmcad.answer.regionmap import Component, Kind, Location, RegionMap, Status
 from ptmcad.answer.words import noun
 from ptmcad.cover import components
 from ptmcad.cover.rectangles import Cover

@@ -11,7 +11,7 @@ from typing import Any
 import click
 
 from ptmcad.answer.plan import own_steps
-from ptmcad.answer.timings import with_compilation
+from ptmcad.answer.regionmap import with_compilation
 from ptmcad.answer.words import several
 from ptmcad.cli.commonoptions import (
     Idle,

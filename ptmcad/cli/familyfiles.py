@@ -128,8 +128,7 @@ def _writers(
     if surface is not None:
         writers |= mesh_writers(surface, name, wanted.among(MESHES))
     if "json" in wanted.formats:
-        files = [f"{member.slice.name}.json" for member in result.members]
-        writers[f"{name}.json"] = text_writer(write_family(result, files))
+        writers[f"{name}.json"] = text_writer(write_family(result))
     return writers
 
 
@@ -176,9 +175,9 @@ def read_family_file(path: Path, *, whole: bool = True) -> FamilyMap:
     ConfigError
         When one of the files cannot be read, or is not what it should be.
     """
-    stored = read_other(path, read_family, FORMAT)
-    members = tuple(read_result(path.parent / file, whole=whole) for file in stored.files)
-    for value, file, member in zip(stored.values, stored.files, members, strict=True):
+    stored, files = read_other(path, read_family, FORMAT)
+    members = tuple(read_result(path.parent / file, whole=whole) for file in files)
+    for value, file, member in zip(stored.values, files, members, strict=True):
         if member.slice.axes != members[0].slice.axes:
             raise ConfigError(
                 "its members are not of one family: their axes differ", file=str(path)
@@ -189,13 +188,4 @@ def read_family_file(path: Path, *, whole: bool = True) -> FamilyMap:
                 f"is not the member at {place} that {path.name} names: {fault}",
                 file=str(path.parent / file),
             )
-    return FamilyMap(
-        stored.name,
-        stored.free,
-        stored.values,
-        members,
-        stored.surfaces,
-        stored.title,
-        stored.changes,
-        stored.text,
-    )
+    return replace(stored, members=members)

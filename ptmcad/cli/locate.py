@@ -9,8 +9,7 @@ from pathlib import Path
 
 import click
 
-from ptmcad.answer.location import Location
-from ptmcad.answer.regionmap import RegionMap
+from ptmcad.answer.regionmap import Location, RegionMap
 from ptmcad.answer.words import index_words
 from ptmcad.cli.commonoptions import PATH, ResourceLimits, held, limit_options, result_argument
 from ptmcad.cli.completion import point as propose_point

@@ -221,10 +221,10 @@ class _Watch:
         """The child's exit code, or minus the signal that ended it."""
         kill_at = math.inf
         while True:
-            self._read_all(ends)  # before the child is asked for: an end after that wakes `select`
+            self._read(ends)  # before the child is asked for: an end after that wakes `select`
             child, status, self.used = os.wait4(self.child, os.WNOHANG)
             if child:
-                self._read_all(ends)  # now all that it has said is there
+                self._read(ends)  # now all that it has said is there
                 return os.waitstatus_to_exitcode(status)
             now = time.monotonic()
             if now < self.asked + GRACE_SECONDS:
@@ -257,23 +257,22 @@ class _Watch:
             float(self.reports.get(Topic.DEADLINE, ["inf"])[0]) + OVERRUN_SECONDS
         )  # infinite while the clock stands
 
-    def _read_all(self, ends: list[int]) -> None:
-        for end in ends:
-            self._read(end)
-
-    def _read(self, end: int) -> None:
+    def _read(self, ends: list[int]) -> None:
         """Take what there is; a pipe has no end, since this process could write to it, too."""
-        with suppress(BlockingIOError):
-            while data := os.read(end, 1 << 16):
-                if end == self.messages:
-                    self.received += data
-                    for topic, texts in received(self.received):
-                        self.reports[topic] = texts
-                        self.saved += texts if topic is Topic.SAVED else ()
-                elif end == self.printed:
-                    self.text += data
-                elif self.asked == math.inf:  # afterwards it is the child's echo of what asked it
-                    self.caught += [number for number in data if number in self.heeded]
+        for end in ends:
+            with suppress(BlockingIOError):
+                while data := os.read(end, 1 << 16):
+                    if end == self.messages:
+                        self.received += data
+                        for topic, texts in received(self.received):
+                            self.reports[topic] = texts
+                            self.saved += texts if topic is Topic.SAVED else ()
+                    elif end == self.printed:
+                        self.text += data
+                    elif (
+                        self.asked == math.inf
+                    ):  # afterwards it is the child's echo of what asked it
+                        self.caught += [number for number in data if number in self.heeded]
 
     def _end(self, ended: int) -> int:
         """Leave nothing behind, say what there is to say, and return the exit status."""

@@ -19,8 +19,7 @@ from ptmcad.errors import ExpressionError, GeometryError
 from ptmcad.model import Kind, Model
 from ptmcad.model.elements import Part
 from ptmcad.question.positivity import Need, decide, middle_of, named, number, place, window_of
-from ptmcad.question.signs import PROVED, Finding, Subject, Witness
-from ptmcad.question.slice import Axes, Slice
+from ptmcad.question.slice import PROVED, Axes, Finding, Slice, Subject, Witness
 from ptmcad.text.expressions import Expression, Expressions, constant
 from ptmcad.text.parsing import value_in_axes
 

@@ -13,7 +13,7 @@ References: Farouki, "The Bernstein polynomial basis: a centennial retrospective
 section 4.
 """
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from enum import Enum
 from fractions import Fraction
 from functools import lru_cache
@@ -22,9 +22,8 @@ from itertools import count, pairwise, product
 from math import comb, lcm
 from typing import NamedTuple
 
-from ptmcad.question.signs import PROVED, Box, Corner, Interval, Verdict, Witness
-from ptmcad.question.slice import Axes
-from ptmcad.text.expressions import Expression, Term, polynomial_value
+from ptmcad.question.slice import PROVED, Axes, Box, Corner, Interval, Verdict, Witness
+from ptmcad.text.expressions import Expression, Terms, polynomial_value
 from ptmcad.text.numerals import approximate_text
 
 MAX_SPLITS = 400
@@ -32,6 +31,10 @@ MAX_WORK = 2_000_000
 """Additions of Bernstein coefficients; less than a second."""
 MAX_SHOWN = 10**40
 """Numerators and denominators from here on are shown rounded."""
+
+
+Row = tuple[int, ...]
+Rows = tuple[Row, ...]
 
 
 class Need(Enum):
@@ -52,26 +55,27 @@ def decide(expression: Expression, axes: Axes, need: Need) -> Verdict:
     For `Need.POSITIVE` and `Need.NOT_NEGATIVE` the verdict holds where the denominator, as it is
     written, is not zero; ask for `Need.NO_POLE` too.
     """
-    window = window_of(axes)
+    window, asks_pole = window_of(axes), need is Need.NO_POLE
     middle = middle_of(window)
     denominator = polynomial_value(expression.denominator, *middle)
     if denominator == 0:
-        return Witness(middle, denominator) if need is Need.NO_POLE else (window,)
+        return Witness(middle, denominator) if asks_pole else (window,)
     side = 1 if denominator > 0 else -1
-    if need is Need.NO_POLE:
-        verdict = _decided(_times(expression.denominator, side), window, True)
-        if isinstance(verdict, Witness):
-            other = middle if verdict.value < 0 else None
-            return Witness(verdict.point, side * verdict.value, other)
+    terms = expression.denominator if asks_pole else expression.numerator
+    signed = tuple((i, j, side * c) for i, j, c in terms)
+    verdict = _decided(signed, window, need is not Need.NOT_NEGATIVE)
+    if not isinstance(verdict, Witness):
         return verdict
-    verdict = _decided(_times(expression.numerator, side), window, need is Need.POSITIVE)
-    if isinstance(verdict, Witness) and verdict.value:
-        denominator = polynomial_value(expression.denominator, *verdict.point)
-        if denominator == 0:
-            x, y = verdict.point
-            return (((x, x), (y, y)),)
-        return Witness(verdict.point, side * verdict.value / denominator)
-    return verdict
+    point, value = verdict.point, side * verdict.value
+    if asks_pole:
+        return Witness(point, value, middle if verdict.value < 0 else None)
+    if value == 0:
+        return verdict
+    denominator = polynomial_value(expression.denominator, *point)
+    if denominator == 0:
+        x, y = point
+        return (((x, x), (y, y)),)
+    return Witness(point, value / denominator)
 
 
 def place(verdict: Verdict, axes: Axes) -> str:
@@ -102,7 +106,7 @@ class _Part(NamedTuple):
     """
 
     box: Box
-    rows: tuple[tuple[int, ...], ...]
+    rows: Rows
     shift: int
 
     def lowest(self) -> Fraction:
@@ -110,32 +114,27 @@ class _Part(NamedTuple):
         return Fraction(min(map(min, self.rows)), 1 << self.shift)
 
 
-def _decided(terms: tuple[Term, ...], window: Box, strict: bool) -> Verdict:
+def _decided(terms: Terms, window: Box, strict: bool) -> Verdict:
     """Whether a polynomial is positive, or not negative, in the open window."""
     if not terms:
         return Witness(middle_of(window), Fraction(0)) if strict else PROVED
-    rows, scale = _integer_rows(terms, window)
+    exact = bernstein(terms, window)
+    denominator = lcm(*(c.denominator for row in exact for c in row))
+    rows = tuple(tuple(int(c * denominator) for c in row) for row in exact)
     cost = max(1, len(rows) * len(rows[0]) * max(len(rows), len(rows[0])) // 2)
-    whole = _Part(window, rows, 0)
     order = count()
     waiting: list[tuple[Fraction, int, _Part]] = []
-
-    def look(part: _Part) -> Witness | None:
-        for point, value in _inner_corners(part, window):
-            if value < 0 or (strict and value == 0):
-                return Witness(point, value * scale)
-        if not _is_proved(part, window, strict):
-            heappush(waiting, (part.lowest(), next(order), part))
-        return None
-
-    if (witness := look(whole)) is not None:
-        return witness
-    for _ in range(min(MAX_SPLITS, MAX_WORK // cost)):
-        if not waiting:
+    fresh: tuple[_Part, ...] = (_Part(window, rows, 0),)
+    for splits in range(min(MAX_SPLITS, MAX_WORK // cost), -1, -1):
+        for part in fresh:
+            for point, value in _inner_corners(part, window):
+                if value < 0 or (strict and value == 0):
+                    return Witness(point, value / denominator)
+            if not _is_proved(part, window, strict):
+                heappush(waiting, (part.lowest(), next(order), part))
+        if not (splits and waiting):
             break
-        for half in _halves(heappop(waiting)[2]):
-            if (witness := look(half)) is not None:
-                return witness
+        fresh = _halves(heappop(waiting)[2])
     return tuple(part.box for _, _, part in sorted(waiting, key=lambda w: w[:2]))
 
 
@@ -195,7 +194,7 @@ def _halves(part: _Part) -> tuple[_Part, _Part]:
     return _Part(boxes[0], first, shift), _Part(boxes[1], second, shift)
 
 
-def _halved(row: Sequence[int]) -> tuple[tuple[int, ...], tuple[int, ...]]:
+def _halved(row: Row) -> tuple[Row, Row]:
     """De Casteljau's subdivision at the middle, times 2^degree."""
     degree = len(row) - 1
     left, right, sums = [row[0] << degree], [row[-1] << degree], list(row)
@@ -206,23 +205,12 @@ def _halved(row: Sequence[int]) -> tuple[tuple[int, ...], tuple[int, ...]]:
     return tuple(left), tuple(reversed(right))
 
 
-def _variation(rows: Sequence[Sequence[int]]) -> int:
+def _variation(rows: Rows) -> int:
     """The largest difference of two coefficients in a row."""
     return max(max(row) - min(row) for row in rows)
 
 
-def _integer_rows(
-    terms: tuple[Term, ...], window: Box
-) -> tuple[tuple[tuple[int, ...], ...], Fraction]:
-    """Integers and a positive unit: the Bernstein coefficients on the window are the integers times
-    the unit.
-    """
-    rows = bernstein(terms, window)
-    denominator = lcm(*(c.denominator for row in rows for c in row))
-    return tuple(tuple(int(c * denominator) for c in row) for row in rows), Fraction(1, denominator)
-
-
-def bernstein(terms: tuple[Term, ...], box: Box) -> list[list[Fraction]]:
+def bernstein(terms: Terms, box: Box) -> list[list[Fraction]]:
     """The Bernstein coefficients of a polynomial on a box; row p belongs to the p-th basis function
     of the first axis.
 
@@ -264,10 +252,6 @@ def _power_in_bernstein(power: int, degree: int, interval: Interval) -> list[Fra
         )
         for p in range(degree + 1)
     ]
-
-
-def _times(terms: tuple[Term, ...], side: int) -> tuple[Term, ...]:
-    return tuple((i, j, side * c) for i, j, c in terms)
 
 
 def window_of(axes: Axes) -> Box:

@@ -1,6 +1,10 @@
 """A slice: a two-parameter family of mechanisms over a rectangular window, with exact rational
 data.
 
+A slice carries what is known of the signs of its quantities in its window. A `Finding` says of which
+function and in which window it holds, so that it cannot be taken for that of another one: a slice
+whose parameters or axes were changed by hand carries none of the new ones.
+
 Guarantee: a `Slice` that `config` has built is complete (every parameter of the mechanism has a
 value as a rational function of the two axes), its window is a nonempty rectangle, and no number in
 it was rounded.
@@ -19,8 +23,9 @@ from ptmcad.model import Kind, Model
 from ptmcad.model.evaluate import value_among
 from ptmcad.model.work import foreign, split_moments
 from ptmcad.question.counts import USUAL, Count
-from ptmcad.question.signs import Finding
 from ptmcad.text.expressions import Expression, Expressions, constant
+from ptmcad.text.numerals import Texts
+from ptmcad.text.plane import Names
 
 QUANTITIES = ("length", "force")
 """Whose units a record may declare."""
@@ -65,6 +70,63 @@ class Axis(NamedTuple):
 Axes = tuple[Axis, Axis]
 """Those of a window, the horizontal one first."""
 
+Corner = tuple[Fraction, Fraction]
+Interval = tuple[Fraction, Fraction]
+Box = tuple[Interval, Interval]
+
+
+class Witness(NamedTuple):
+    """A point of the open window at which the function is not what was asked for.
+
+    Attributes
+    ----------
+    value : of the function there, or of its denominator when a pole is the matter.
+    other : for a pole, a point at which the denominator has the other sign, if one was found.
+    """
+
+    point: Corner
+    value: Fraction
+    other: Corner | None = None
+
+
+Verdict = Witness | tuple[Box, ...]
+"""A witness, or the boxes that hide all dips to zero or below; their number is zero for a proof."""
+PROVED: tuple[Box, ...] = ()
+"""The function is what was asked for at every point of the open window."""
+
+
+class Subject(NamedTuple):
+    """A parameter, or a stiffness or a length that is written where a spring or a bar has it.
+
+    Attributes
+    ----------
+    text : the parameter's name, or the expression as a message shows it.
+    kind : what it measures, which decides what sign it needs.
+    value : as a function of the axes.
+    part : where it is written in the description, such as ``springs.2.k``; empty of a parameter.
+    """
+
+    text: str
+    kind: Kind
+    value: Expression
+    part: str = ""
+
+
+class Finding(NamedTuple):
+    """Whether a subject is in the whole open window what its kind asks for.
+
+    Attributes
+    ----------
+    problem : what is wrong or not proved, in words; empty where it is proved.
+    is_final : whether more work would find nothing else.
+    """
+
+    subject: Subject
+    window: Box
+    verdict: Verdict
+    problem: str = ""
+    is_final: bool = True
+
 
 @dataclass(frozen=True, slots=True)
 class Slice:
@@ -96,12 +158,12 @@ class Slice:
     count: Count = USUAL
     title: str = ""
     reference: Mapping[str, Any] = field(default_factory=dict)
-    text: Mapping[str, str] = field(default_factory=dict)
-    units: Mapping[str, str] = field(default_factory=dict)
+    text: Texts = field(default_factory=dict)
+    units: Texts = field(default_factory=dict)
     signs: tuple[Finding, ...] = field(default=(), compare=False, repr=False)
 
     @property
-    def axis_names(self) -> tuple[str, str]:
+    def axis_names(self) -> Names:
         return (self.axes[0].name, self.axes[1].name)
 
     @property
@@ -278,14 +340,14 @@ class Point(tuple[Fraction, Fraction]):
     (Fraction(7, 10), Fraction(3, 2), {'rho': Fraction(7, 10), 'L2': Fraction(3, 2)})
     """
 
-    names: tuple[str, str]
+    names: Names
 
-    def __new__(cls, names: tuple[str, str], x: Fraction, y: Fraction) -> Point:
+    def __new__(cls, names: Names, x: Fraction, y: Fraction) -> Point:
         point = super().__new__(cls, (x, y))
         point.names = names
         return point
 
-    def __getnewargs__(self) -> tuple[tuple[str, str], Fraction, Fraction]:
+    def __getnewargs__(self) -> tuple[Names, Fraction, Fraction]:
         return (self.names, tuple.__getitem__(self, 0), tuple.__getitem__(self, 1))
 
     def keys(self) -> Iterator[str]:

@@ -9,8 +9,9 @@ from fractions import Fraction
 
 from ptmcad.answer.design import BestDesign
 from ptmcad.answer.words import sought
+from ptmcad.question.slice import Axis
 from ptmcad.text.enclosure import Enclosure
-from ptmcad.text.numerals import decimal, equalities, shortest_text
+from ptmcad.text.numerals import between, decimal, equalities, percent, shortest_text
 
 DIGITS = 10
 _BOUND_DIGITS = 7
@@ -42,9 +43,8 @@ def _asked(found: BestDesign) -> str:
     return f"{found.maximise}, where there are {number}"
 
 
-def _window(axis: object) -> str:
-    name, low, high = (getattr(axis, part) for part in ("name", "low", "high"))
-    return f"{name} in [{shortest_text(low)}, {shortest_text(high)}]"
+def _window(axis: Axis) -> str:
+    return f"{axis.name} in [{shortest_text(axis.low)}, {shortest_text(axis.high)}]"
 
 
 def _span(found: BestDesign) -> str:
@@ -56,26 +56,19 @@ def _span(found: BestDesign) -> str:
 
 def value_text(value: Enclosure) -> str:
     """All digits that are known, at most ten."""
-    for digits in range(DIGITS, 1, -1):
-        if value.settles(digits):
-            return value.text(digits)
-    low, high = (
-        decimal(end, up, _BOUND_DIGITS) for end, up in ((value.low, False), (value.high, True))
-    )
-    return f"{low} to {high}"
+    return value.settled_text(DIGITS, least=2) or between(value.low, value.high, _BOUND_DIGITS)
 
 
 def _proof(found: BestDesign) -> str:
     if found.bound is None:
         return f"of the value at this design alone; {found.reason}"
     bound = decimal(found.bound, up=True, digits=_BOUND_DIGITS)
-    if found.value is None or found.value.low <= 0:
-        return f"no design has more than {bound}, {found.reason}"
-    excess = found.bound / found.value.low - 1
+    low = found.value.low if found.value is not None else 0
+    excess = found.bound / low - 1 if low > 0 else Fraction(0)
     if excess < _NOTHING:
         return f"no design has more than {bound}, {found.reason}"
-    share = f"{decimal(excess * 100, up=True, digits=2)} % more"
-    words = f"no design has more than {bound}, {share}, {found.reason}"
+    share = percent(excess)
+    words = f"no design has more than {bound}, {share} more, {found.reason}"
     return (
         words if found.proved else f"{words}; not within {shortest_text(found.tolerance * 100)} %"
     )

@@ -22,7 +22,8 @@ def _obj_lines(surface: BoundarySurface) -> Iterator[str]:
     yield from ("v " + " ".join(map(repr, point)) for point in surface.vertices.tolist())
     pairs = zip(surface.sheet.tolist(), surface.faces.tolist(), strict=True)
     for sheet, faces in groupby(pairs, key=lambda pair: pair[0]):
-        yield f"g sheet-{sheet}-between-{'-and-'.join(_counts(surface, sheet))}"
+        counts = "-and-".join("_".join(map(str, key)) for key in surface.sheets[sheet].counts)
+        yield f"g sheet-{sheet}-between-{counts}"
         yield from ("f " + " ".join(str(n + 1) for n in face) for _, face in faces)
 
 
@@ -63,10 +64,6 @@ def ply_text(surface: BoundarySurface) -> str:
         for (a, b, c), sheet in zip(surface.faces.tolist(), surface.sheet.tolist(), strict=True)
     )
     return "\n".join((*head, *points, *faces)) + "\n"
-
-
-def _counts(surface: BoundarySurface, sheet: int) -> list[str]:
-    return ["_".join(map(str, key)) for key in surface.sheets[sheet].counts]
 
 
 MESHES: Mapping[str, Callable[[BoundarySurface], str]] = {"obj": obj_text, "ply": ply_text}

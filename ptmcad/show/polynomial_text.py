@@ -15,7 +15,7 @@ from functools import partial
 from keyword import kwlist
 
 from ptmcad.text.numerals import integer_text
-from ptmcad.text.plane import PlanePolynomial, signed_terms
+from ptmcad.text.plane import Names, PlanePolynomial, signed_terms
 
 
 class Style(Enum):
@@ -73,7 +73,7 @@ def symbols(names: Sequence[str], style: Style) -> tuple[str, ...]:
     return tuple(spelled)
 
 
-def polynomial_text(polynomial: PlanePolynomial, names: tuple[str, str], style: Style | str) -> str:
+def polynomial_text(polynomial: PlanePolynomial, names: Names, style: Style | str) -> str:
     """The polynomial on one line.
 
     Parameters
@@ -94,7 +94,7 @@ def polynomial_text(polynomial: PlanePolynomial, names: tuple[str, str], style: 
 
 
 def polynomial_lines(
-    polynomial: PlanePolynomial, names: tuple[str, str], style: Style | str, width: int = 100
+    polynomial: PlanePolynomial, names: Names, style: Style | str, width: int = 100
 ) -> list[str]:
     """The polynomial on lines of at most ``width`` characters, broken before the sign of a term.
 

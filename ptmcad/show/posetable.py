@@ -16,7 +16,7 @@ from ptmcad.model import Model, built_in
 from ptmcad.model.work import foreign, loads_at
 from ptmcad.question.counts import POSE_COLUMNS, Predicate
 from ptmcad.question.slice import merged
-from ptmcad.show.columns import WIDTH, aligned, wrapped
+from ptmcad.show.table import WIDTH, aligned, wrapped
 from ptmcad.show.units import declared_units
 from ptmcad.text.enclosure import Enclosure, exact_text
 
@@ -47,7 +47,7 @@ def table(poses: Poses, digits: int | None = None) -> str:
         *wrapped("result", _summary(poses)),
     ]
     for block in _blocks(poses, shown):
-        lines += ["", *aligned([*zip(*block, strict=True)], str.rjust)]
+        lines += ["", *aligned([*zip(*block, strict=True)], right=len(block))]
     if poses.equilibria:
         notes = {"units": _units(poses), "energy": [_energy_note(poses)]}
         notes |= {label: [note] for label, note in poses.equilibria[0].notes.items()}

@@ -11,9 +11,9 @@ from collections.abc import Mapping
 from typing import Any
 
 from ptmcad.show.document import designdocument, mapdocument, posedocument
-from ptmcad.show.document.varietydocument import FORMAT as VARIETY
-from ptmcad.show.document.varietydocument import variety_codec
 from ptmcad.show.ranges import rangedocument as ranges
+from ptmcad.show.varietytext import FORMAT as VARIETY
+from ptmcad.show.varietytext import variety_codec
 from ptmcad.text.documents import Schema, document_schema
 
 PROSE = ("$schema", "title", "description")

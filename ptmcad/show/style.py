@@ -182,21 +182,19 @@ def _size(value: Any) -> Size:
             raise ConfigError(f"{value!r} is not a size such as 3.5x2.6in or 90x70mm", key="size")
         size = (float(match[1]) * _TO_INCHES[match[3]], float(match[2]) * _TO_INCHES[match[3]])
     else:
-        size = _two(value)
+        try:
+            width, height = map(float, value)
+        except (TypeError, ValueError) as error:
+            raise ConfigError(
+                f"{value!r} is not a width and a height in inches", key="size"
+            ) from error
+        size = width, height
     if not all(MIN_SIDE <= side <= MAX_SIDE for side in size):
         least, most = f"{MIN_SIDE:g}", f"{MAX_SIDE:g}"
         raise ConfigError(
             f"{value!r}: each side must be {least} to {most} inches ({least}x{least}in)", key="size"
         )
     return size
-
-
-def _two(value: Any) -> Size:
-    try:
-        width, height = (float(side) for side in value)
-    except (TypeError, ValueError) as error:
-        raise ConfigError(f"{value!r} is not a width and a height in inches", key="size") from error
-    return width, height
 
 
 def _points(key: str, least: float, most: float, why: str) -> Any:

@@ -13,9 +13,9 @@ from collections.abc import Callable, Iterable, Iterator
 from fractions import Fraction
 from typing import Any
 
-from ptmcad.answer.sweep import CountedArea, Member, State, Sweep, Widest
+from ptmcad.answer.sweep import Bounds, CountedArea, Member, State, Sweep
 from ptmcad.show import data
-from ptmcad.show.columns import aligned
+from ptmcad.show.table import aligned, in_order
 from ptmcad.text.numerals import fraction_of, shortest_text
 
 Members = Callable[[], Iterable[Member]]
@@ -64,23 +64,17 @@ def _cells(sweep: Sweep, member: Member) -> list[str]:
     areas = "; ".join(
         f"{area.count}: {_rounded(area.area)}" for area in found.areas if area.area[0]
     )
-    return [*values, str(found.regions), areas, _widest(found.widest)]
+    widest = ""
+    if found.widest is not None and found.widest.width is not None:
+        widest = f"{_rounded(found.widest.width)}, {found.widest.attainment}"
+    return [*values, str(found.regions), areas, widest]
 
 
-def _widest(found: Widest | None) -> str:
-    """The width, and whether it is attained."""
-    return (
-        ""
-        if found is None or found.width is None
-        else f"{_rounded(found.width)}, {found.attainment}"
-    )
-
-
-def _rounded(bounds: tuple[str, str]) -> str:
+def _rounded(bounds: Bounds) -> str:
     return f"{float(middle(bounds)):.4g}"
 
 
-def middle(bounds: tuple[str, str]) -> Fraction:
+def middle(bounds: Bounds) -> Fraction:
     """The middle of two bounds."""
     return (fraction_of(bounds[0]) + fraction_of(bounds[1])) / 2
 
@@ -96,12 +90,7 @@ def csv_text(sweep: Sweep, members: Members) -> str:
 def counts_in(members: Iterable[Member]) -> tuple[str, ...]:
     """The counts of regions that occur in any member, in increasing order."""
     found = {area.count for member in members if member.summary for area in member.summary.areas}
-    return tuple(sorted(found, key=count_order))
-
-
-def count_order(count: str) -> tuple[int, ...]:
-    """What counts are sorted by."""
-    return (-1,) if count == "?" else tuple(map(int, count.split("-")))
+    return tuple(sorted(found, key=in_order))
 
 
 def columns(sweep: Sweep, counts: Iterable[str]) -> list[str]:
@@ -127,31 +116,27 @@ def parameter_columns(sweep: Sweep) -> dict[str, str]:
 def row(sweep: Sweep, member: Member, counts: Iterable[str]) -> Row:
     """A member's cells by the names of their columns."""
     found = member.summary
-    cells: Row = {"member": member.number, "state": member.state.value, "same_as": member.same_as}
-    cells |= {column: member.parameters[name] for name, column in parameter_columns(sweep).items()}
-    cells |= {"error": _harmless(member.error), "file": member.file, "digest": member.digest}
+    cells: Row = {
+        "member": member.number, "state": member.state.value, "same_as": member.same_as,
+        "error": _harmless(member.error), "file": member.file, "digest": member.digest,
+        **{column: member.parameters[name] for name, column in parameter_columns(sweep).items()},
+    }  # fmt: skip
     if found is None:
         return cells
-    cells |= {
-        "status": found.status, "cells": found.cells, "regions": found.regions, "undetermined": found.undetermined,
-    }  # fmt: skip
+    cells |= {name: getattr(found, name) for name in ("status", "cells", "regions", "undetermined")}
     areas = {area.count: area for area in found.areas}
     for count in counts:
         area = areas.get(count, CountedArea(count, 0, ("0", "0")))
-        cells |= {f"regions_{count}": area.regions, f"area_{count}_low": area.area[0]}
-        cells[f"area_{count}_high"] = area.area[1]
+        own = (area.regions, *area.area)
+        cells |= {f"{what}_{count}{end}": n for (what, end), n in zip(_BY_COUNT, own, strict=True)}
     if (widest := found.widest) is not None:
         low, high = widest.width or ("", "")
-        at = widest.places[0] if widest.places else ("", "")
+        at_low, at_high = widest.places[0] if widest.places else ("", "")
         cells |= {
-            "along": widest.along,
-            "width_low": low,
-            "width_high": high,
-            "at_low": at[0],
-            "at_high": at[1],
-        }
-        cells |= {"proof": widest.proof, "remark": _harmless(widest.remark)}
-        cells["attainment"] = "" if widest.width is None else widest.attainment
+            "along": widest.along, "width_low": low, "width_high": high, "at_low": at_low, "at_high": at_high,
+            "attainment": "" if widest.width is None else widest.attainment, "proof": widest.proof,
+            "remark": _harmless(widest.remark),
+        }  # fmt: skip
     return cells
 
 

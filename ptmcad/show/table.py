@@ -1,23 +1,61 @@
-"""The five-line table of a region map for the terminal."""
+"""Rows and lists as lines of text; the five-line table of a region map for the terminal, and those of
+a family and its changes: a line for each member, and for each change.
+
+Guarantee: areas are certified; the digits of an exact value of a change are right, the ends of an
+enclosure are rounded outwards.
+"""
 
 from __future__ import annotations
 
 import re
+import textwrap
 from collections import Counter
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
 from ptmcad.answer.counts import counted_by, key_text
-from ptmcad.answer.regionmap import Region, RegionMap
-from ptmcad.answer.timings import COMPILATION
+from ptmcad.answer.regionmap import COMPILATION, Region, RegionMap
 from ptmcad.answer.words import count_words, noun, several
 from ptmcad.question.counts import Count
 from ptmcad.show.units import area_unit
-from ptmcad.text.numerals import certified_digits, interval_text, magnitude, percent
+from ptmcad.text.enclosure import AlgebraicNumber
+from ptmcad.text.numerals import (
+    Bounds,
+    between,
+    certified_digits,
+    interval_text,
+    magnitude,
+    percent,
+    shortest_text,
+)
 
-if TYPE_CHECKING:  # a map of the exact engine has no cover
-    from ptmcad.cover.rectangles import Cover
+if TYPE_CHECKING:  # most maps are in no family
+    from ptmcad.answer.family import Change, Changes, FamilyMap
+
+
+WIDTH = 100
+"""Characters of a line."""
+
+
+def aligned(rows: Sequence[Sequence[str]], right: int = 0) -> list[str]:
+    """Rows as lines with columns of equal width; so many of them, from the left, end where their
+    longest entry does.
+    """
+    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
+    sides = [str.rjust] * right + [str.ljust] * (len(widths) - right)
+    lines = (zip(sides, row, widths, strict=True) for row in rows)
+    return ["  ".join(side(text, width) for side, text, width in line).rstrip() for line in lines]
+
+
+def wrapped(label: str, parts: Sequence[str], separator: str = ", ") -> list[str]:
+    """The parts after a label, on as many lines as they need; no part is broken."""
+    whole = separator.join(part.replace(" ", "\0") for part in parts)
+    lines = textwrap.wrap(
+        whole, WIDTH, initial_indent=f"{label:8}", subsequent_indent=" " * 8, break_long_words=False,
+        break_on_hyphens=False,
+    )  # fmt: skip
+    return [line.replace("\0", " ") for line in lines]
 
 
 def count_text(region: Region, count: Count) -> str:
@@ -35,7 +73,7 @@ def in_order(text: str) -> list[int]:
     return [int(number) for number in re.findall(r"\d+", text)]
 
 
-def area_text(result: RegionMap, bounds: tuple[Fraction, Fraction]) -> str:
+def area_text(result: RegionMap, bounds: Bounds) -> str:
     """An area as it is printed everywhere: one number of an exact map, both bounds of a certified
     one, and its unit.
     """
@@ -43,7 +81,7 @@ def area_text(result: RegionMap, bounds: tuple[Fraction, Fraction]) -> str:
     return f"{area_digits(result, bounds)} {known}" if known else area_digits(result, bounds)
 
 
-def area_digits(result: RegionMap, bounds: tuple[Fraction, Fraction]) -> str:
+def area_digits(result: RegionMap, bounds: Bounds) -> str:
     """The same without the unit."""
     return certified_digits(bounds) if result.cover is None else interval_text(bounds)
 
@@ -67,13 +105,13 @@ def region_area(result: RegionMap, number: int) -> str:
     )
 
 
-def area_by_count(result: RegionMap) -> dict[str, tuple[Fraction, Fraction]]:
+def area_by_count(result: RegionMap) -> dict[str, Bounds]:
     """Bounds of the area of the regions with each count, by the count's text.
 
     What is undetermined is a part of several bounds of a certified map, but in their sum once.
     """
     undetermined = result.undetermined * result.slice.area
-    areas: dict[str, list[tuple[Fraction, Fraction]]] = {}
+    areas: dict[str, list[Bounds]] = {}
     for region in result.regions:
         areas.setdefault(count_text(region, result.slice.count), []).append(region.area)
     found = {}
@@ -95,6 +133,10 @@ def _short(value: Fraction) -> str:
 
 
 def _curves(result: RegionMap) -> str:
+    """The boundary curves with their degrees, or the size of the cover."""
+    if result.cover is not None:
+        rectangles = several(len(result.cover.rectangles), "rectangle")
+        return f"cover     {rectangles} around the curves where counts change"
     names = result.slice.axis_names
     alike = Counter(
         (c.kind.value, c.polynomial.degrees, len(c.polynomial.terms))
@@ -112,11 +154,6 @@ def _curves(result: RegionMap) -> str:
         for n, found in result.continua.items()
     ]
     return "\n".join(lines)
-
-
-def _covered(cover: Cover) -> str:
-    rectangles = several(len(cover.rectangles), "rectangle")
-    return f"cover     {rectangles} around the curves where counts change"
 
 
 def _time(result: RegionMap) -> str:
@@ -167,7 +204,7 @@ def table(result: RegionMap) -> str:
             f"counts    {counts or 'none yet'}",
             f"areas     {areas or 'none yet'}",
             *(f"stable    {words}" for words in [stability_in_words(result)] if words),
-            _curves(result) if result.cover is None else _covered(result.cover),
+            _curves(result),
             *_vanishing(result),
             f"time      {_time(result)}; {wrong}; {bound}",
         ]
@@ -201,3 +238,71 @@ def _vanishing(result: RegionMap) -> list[str]:
     return [
         f"zero      in {several(cells, 'cell')} a condition for stability is 0 at a solution, which counts as unstable"
     ]
+
+
+def family_table(family: FamilyMap) -> str:
+    """Value of the free parameter, regions, cells and areas of each member, and the surfaces."""
+    rows = [[family.free.name, "regions", "cells", "areas by count"]]
+    for value, result in family:
+        numbers = map(str, map(len, (result.regions, result.cells)))
+        rows.append([shortest_text(value), *numbers, _areas(result)])
+    lines = aligned(rows, right=3)
+    if family.surfaces:
+        sizes = ", ".join(
+            f"{several(len(terms), 'term')} of degree {max(sum(powers) for powers, _ in terms)}"
+            for terms in family.surfaces
+        )
+        many = "surfaces" if len(family.surfaces) > 1 else "surface"
+        lines.append(f"computed once for all: {many} where solutions meet, {sizes}")
+    if family.changes is not None:
+        lines.append(changes_table(family.changes))
+    return "\n".join(lines)
+
+
+def _areas(result: RegionMap) -> str:
+    known = area_by_count(result)
+    if known and not areas_are_known(result):
+        return f"{NOT_COMPUTED}; counts {', '.join(known)}"
+    return "; ".join(f"{count}: {area_text(result, bounds)}" for count, bounds in known.items())
+
+
+_DIGITS = 10
+_OTHERS = 8
+"""Values at which nothing changes that are listed; more are counted."""
+
+
+def changes_table(found: Changes) -> str:
+    """Value, how it is known, and what changes, line by line; then what is known of completeness."""
+    free = found.free
+    title = f"changes of the arrangement for {free.name} between {shortest_text(free.low)} and {shortest_text(free.high)}"
+    rows = [
+        ["", *(("", "") if number else (value_text(change), _kind(change))), text]
+        for change in found
+        for number, text in enumerate(change.words)
+    ]
+    lines = [f"{title}: {len(found) or 'none'}", *aligned(rows, right=2)]
+    for end, words in zip((free.low, free.high), found.at_ends, strict=True):
+        if words:
+            lines.append(f"  at {free.name} = {shortest_text(end)} itself: {'; '.join(words)}")
+    lines.append(found.reason)
+    if found.others:
+        listed = ", ".join(number.text(6) for number in found.others[:_OTHERS])
+        more = f" and {len(found.others) - _OTHERS} more" if len(found.others) > _OTHERS else ""
+        lines.append(
+            f"where curves meet or turn and the arrangement is the same on both sides: {listed}{more}"
+        )
+    return "\n".join(lines)
+
+
+def value_text(change: Change) -> str:
+    """The value with ten digits, or the two ends of its enclosure."""
+    if isinstance(change.value, AlgebraicNumber):
+        return change.value.text()
+    return between(change.value.low, change.value.high, _DIGITS)
+
+
+def _kind(change: Change) -> str:
+    if not isinstance(change.value, AlgebraicNumber):
+        return "enclosed"
+    degree = change.value.degree
+    return "exact" if degree == 1 else f"exact, of degree {degree}"

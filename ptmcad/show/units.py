@@ -5,12 +5,11 @@ Guarantee: an axis has the unit of the parameters which are a number times it, o
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-
 from ptmcad.model import Model
 from ptmcad.model.elements import Unit
 from ptmcad.question.slice import Slice
 from ptmcad.text.expressions import Expressions, axis
+from ptmcad.text.numerals import Texts
 from ptmcad.text.parsing import parse
 from ptmcad.text.syntax import names_in
 
@@ -35,18 +34,18 @@ def _quantities_in(slice: Slice, parameters: Expressions, exponents: tuple[int, 
     return found.pop() if len(found) == 1 else ()
 
 
-def _joined(slice: Slice, quantities: Unit) -> str:
-    return "".join(slice.units.get(part, part) for part in quantities)
+def _joined(units: Texts, quantities: Unit, between: str = "") -> str:
+    return between.join(units.get(part, part) for part in quantities)
 
 
 def unit(slice: Slice, axis: int) -> str:
     """The unit of an axis, such as ``mm``, or ``length`` where the record declares none; empty when
     not known.
     """
-    return _joined(slice, _quantities(slice, axis))
+    return _joined(slice.units, _quantities(slice, axis))
 
 
-def unit_of_free(slice: Slice, free: str, text: Mapping[str, str]) -> str:
+def unit_of_free(slice: Slice, free: str, text: Texts) -> str:
     """The same of a family's free parameter.
 
     Parameters
@@ -59,31 +58,30 @@ def unit_of_free(slice: Slice, free: str, text: Mapping[str, str]) -> str:
         for name, written in text.items()
         if names_in(written) == (free,)
     }
-    return _joined(slice, _quantities_in(slice, {free: axis(0), **own}, (1, 0)))
+    return _joined(slice.units, _quantities_in(slice, {free: axis(0), **own}, (1, 0)))
 
 
-def energy_unit(model: Model, units: Mapping[str, str]) -> str:
+def energy_unit(model: Model, units: Texts) -> str:
     """The unit of a model's energies, such as ``kN·m``; in words as far as units are not declared,
     none of a system.
     """
-    parts = [units.get(part, part) for part in model.energy_unit]
-    return "".join(parts) if _declares(units, model.energy_unit) else " ".join(parts)
+    return _joined(units, model.energy_unit, " " * (not _declares(units, model.energy_unit)))
 
 
-def _declares(units: Mapping[str, str], quantities: Unit) -> bool:
+def _declares(units: Texts, quantities: Unit) -> bool:
     """Whether a record declares all units that these are made of, and there are any."""
     return bool(quantities) and all(part in units for part in quantities if part not in _SIGNS)
 
 
-def declared_units(model: Model, units: Mapping[str, str]) -> dict[str, str]:
+def declared_units(model: Model, units: Texts) -> dict[str, str]:
     """Of lengths, forces and energies, as far as a record declares them."""
     declared = _declares(units, model.energy_unit)
     return {**units, "energy": energy_unit(model, units)} if declared else {**units}
 
 
-def unit_of_unknown(model: Model, name: str, units: Mapping[str, str]) -> str:
+def unit_of_unknown(model: Model, name: str, units: Texts) -> str:
     """The unit of an unknown: degrees of an angle, and none of a number."""
-    return "".join(units.get(part, part) for part in model.unit_of(name))
+    return _joined(units, model.unit_of(name))
 
 
 def with_unit(name: str, unit: str) -> str:

@@ -10,16 +10,20 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from fractions import Fraction
 from functools import partial
+from operator import attrgetter
+from typing import Any
 
 from ptmcad.answer.regionmap import Component
-from ptmcad.answer.slicevariety import SliceVariety
+from ptmcad.answer.slicevariety import EliminationSystem, SliceVariety
 from ptmcad.answer.words import several
 from ptmcad.errors import ConfigError
-from ptmcad.question.slice import merged
-from ptmcad.show.document.varietydocument import document
+from ptmcad.question.slice import Slice, merged
+from ptmcad.show.document.slicedocument import polynomial_over, slice_over
 from ptmcad.show.polynomial_text import Style, polynomial_lines, symbols
+from ptmcad.text.codec import NATURAL, POSITIVE, TEXT, Codec, derived, listed, named, record_of
+from ptmcad.text.documents import document_text
 from ptmcad.text.numerals import text_of
-from ptmcad.text.plane import PlanePolynomial
+from ptmcad.text.plane import Names, PlanePolynomial
 from ptmcad.text.syntax import did_you_mean
 
 _CODE_WIDTH, _QEPCAD_WIDTH, _TEXT_WIDTH = 100, 90, 96
@@ -95,7 +99,7 @@ def qepcad(variety: SliceVariety) -> str:
     )
 
 
-def _condition(polynomial: PlanePolynomial, names: tuple[str, str], relation: str) -> str:
+def _condition(polynomial: PlanePolynomial, names: Names, relation: str) -> str:
     return (
         "\n  ".join(polynomial_lines(polynomial, names, Style.QEPCAD, _QEPCAD_WIDTH))
         + f" {relation}"
@@ -149,7 +153,7 @@ def window(variety: SliceVariety) -> str:
     return ", ".join(f"{text_of(a.low)} < {a.name} < {text_of(a.high)}" for a in variety.slice.axes)
 
 
-def describe(component: Component, names: tuple[str, str]) -> str:
+def describe(component: Component, names: Names) -> str:
     """Kind, degree, degrees in the axes and number of terms of a component, and why it is left out
     if it is.
     """
@@ -206,6 +210,33 @@ def latex(variety: SliceVariety) -> str:
         lines += [f"  {row} \\\\" for row in rows[:-1]]
         lines += [f"  {rows[-1]}", r"\end{align*}"]
     return "\n".join(lines) + "\n"
+
+
+FORMAT = "ptmcad-variety/1"
+
+
+def document(variety: SliceVariety) -> str:
+    """The variety as JSON text, one component a line."""
+    return document_text(FORMAT, variety_codec(variety.slice.axis_names).write(variety))
+
+
+def variety_codec(names: Names) -> Codec[SliceVariety]:
+    """The codec of a variety over axes of these names."""
+    whole: dict[Any, Codec[Any]] = {PlanePolynomial: polynomial_over(names)}
+    whole[Component] = record_of(
+        Component, whole, separates=None, continuum=None,
+        degree=derived(attrgetter("polynomial.total_degree"), POSITIVE),
+        degrees=derived(lambda c: dict(zip(names, c.polynomial.degrees, strict=True)), named(NATURAL)),
+        terms=derived(lambda c: len(c.polynomial.terms), POSITIVE),
+    )  # fmt: skip
+    whole[EliminationSystem] = record_of(
+        EliminationSystem,
+        axes=None,
+        polynomials=derived(lambda system: system.texts(), listed(TEXT)),
+    )
+    left_out = dict.fromkeys(("title", "text", "count", "reference", "units", "model"))
+    whole[Slice] = slice_over(names, **left_out, mechanism=derived(attrgetter("mechanism")))
+    return record_of(SliceVariety, whole)
 
 
 FORMATS: Mapping[str, Callable[[SliceVariety], str]] = {

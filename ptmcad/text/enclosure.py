@@ -76,6 +76,11 @@ class Enclosure:
         # an even multiple of half a unit is a text itself, and not halfway between two
         return first > last or (first == last and first % 2 == 0)
 
+    def settled_text(self, most: int, least: int = 1) -> str | None:
+        """As many digits as are settled, at most so many; None where it does not settle ``least``."""
+        digits = range(most, least - 1, -1)
+        return next((self.text(n) for n in digits if self.settles(n)), None)
+
     def told_digits(self, digits: int = DIGITS) -> int | None:
         """The fewest digits, from so many on, that the enclosure settles: what `text` writes; None
         of a wider one.

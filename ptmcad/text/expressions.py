@@ -12,6 +12,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from fractions import Fraction
+from functools import reduce
 from math import gcd, lcm
 
 from ptmcad.errors import ExpressionError, PoleError
@@ -19,9 +20,10 @@ from ptmcad.text.numerals import text_of
 from ptmcad.text.plane import plane_text
 
 Term = tuple[int, int, Fraction]
+Terms = tuple[Term, ...]
 _Polynomial = dict[tuple[int, int], Fraction]
 
-ONE: tuple[Term, ...] = ((0, 0, Fraction(1)),)
+ONE: Terms = ((0, 0, Fraction(1)),)
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,8 +44,8 @@ class Expression:
     numerator, denominator : terms ``(i, j, c)``, meaning c x^i y^j; an empty numerator is zero.
     """
 
-    numerator: tuple[Term, ...]
-    denominator: tuple[Term, ...] = ONE
+    numerator: Terms
+    denominator: Terms = ONE
 
     @property
     def is_constant(self) -> bool:
@@ -146,21 +148,12 @@ class Expression:
         )
 
     def __pow__(self, exponent: int) -> Expression:
-        if self.is_constant:
-            base = self.constant()
-            if base == 0 and exponent < 0:
-                raise ExpressionError("division by zero")
-            return constant(base**exponent)
         if exponent < 0:
-            return (constant(1) / self) ** -exponent
-        result, square = constant(1), self
-        while exponent:
-            if exponent & 1:
-                result = result * square
-            exponent >>= 1
-            if exponent:
-                square = square * square
-        return result
+            return constant(1) / self**-exponent
+        if self.is_constant:
+            return constant(self.constant() ** exponent)
+        # powers of a normal form are in normal form
+        return Expression(_power(self.numerator, exponent), _power(self.denominator, exponent))
 
     __radd__, __rmul__ = __add__, __mul__
 
@@ -198,12 +191,12 @@ def axis(index: int) -> Expression:
     return Expression(((1, 0, Fraction(1)),) if index == 0 else ((0, 1, Fraction(1)),))
 
 
-def dict_of(terms: tuple[Term, ...]) -> dict[tuple[int, int], Fraction]:
+def dict_of(terms: Terms) -> dict[tuple[int, int], Fraction]:
     """Terms as a new dictionary from exponent pairs to coefficients."""
     return {(i, j): c for i, j, c in terms}
 
 
-def terms_of(polynomial: Mapping[tuple[int, int], Fraction]) -> tuple[Term, ...]:
+def terms_of(polynomial: Mapping[tuple[int, int], Fraction]) -> Terms:
     """A dictionary from exponent pairs to coefficients as sorted terms, zeros dropped."""
     return tuple((i, j, c) for (i, j), c in sorted(polynomial.items()) if c)
 
@@ -212,7 +205,7 @@ def _as_expression(value: Expression | Fraction | int) -> Expression:
     return value if isinstance(value, Expression) else constant(value)
 
 
-def polynomial_value(terms: tuple[Term, ...], x: Fraction, y: Fraction) -> Fraction:
+def polynomial_value(terms: Terms, x: Fraction, y: Fraction) -> Fraction:
     """The exact value of a polynomial."""
     total = Fraction(0)
     for i, j, c in terms:
@@ -223,20 +216,24 @@ def polynomial_value(terms: tuple[Term, ...], x: Fraction, y: Fraction) -> Fract
     return total
 
 
-def _sum(left: _Polynomial, right: tuple[Term, ...]) -> _Polynomial:
+def _sum(left: _Polynomial, right: Terms) -> _Polynomial:
     for i, j, c in right:
         power = (i, j)
         left[power] = left[power] + c if power in left else c
     return left
 
 
-def _product(left: tuple[Term, ...], right: tuple[Term, ...]) -> _Polynomial:
+def _product(left: Terms, right: Terms) -> _Polynomial:
     product: _Polynomial = {}
     for i, j, c in left:
         for m, n, d in right:
             power = (i + m, j + n)
             product[power] = product[power] + c * d if power in product else c * d
     return product
+
+
+def _power(terms: Terms, exponent: int) -> Terms:
+    return reduce(lambda found, _: terms_of(_product(found, terms)), range(exponent), ONE)
 
 
 def _reduced(numerator: _Polynomial, denominator: _Polynomial) -> Expression:

@@ -19,6 +19,10 @@ from typing import Any, SupportsIndex
 
 Numbers = Mapping[str, Fraction]
 """Exact numbers by the names of what has these values."""
+Texts = Mapping[str, str]
+"""Texts by names: values as they are written, or units."""
+Bounds = tuple[Fraction, Fraction]
+"""What a number is not below, and what it is not above."""
 MAX_DIGITS = 200_000
 """Of a numerator, a denominator or a decimal: longer ones are refused when reading."""
 MAX_EXPONENT = 20_000
@@ -269,7 +273,7 @@ def approximate_text(value: Fraction) -> str:
     return decimal(value, up=value < 0, digits=9)
 
 
-def nearest_multiple(bounds: tuple[Fraction, Fraction], unit: Fraction) -> int | None:
+def nearest_multiple(bounds: Bounds, unit: Fraction) -> int | None:
     """The multiple of the unit next to the middle, where no number between the bounds is more than
     a unit from it.
     """
@@ -287,7 +291,7 @@ def rounded(value: Fraction, unit: Fraction, up: bool) -> Fraction:
     return (ceil(value / unit) if up else floor(value / unit)) * unit
 
 
-def certified_digits(bounds: tuple[Fraction, Fraction], most: int = 10) -> str:
+def certified_digits(bounds: Bounds, most: int = 10) -> str:
     """The longest decimal, of at most ``most`` digits, that is within one unit of its last digit of
     both bounds.
 
@@ -303,10 +307,19 @@ def certified_digits(bounds: tuple[Fraction, Fraction], most: int = 10) -> str:
         digits = nearest_multiple(bounds, unit)
         if digits is not None and digits > 0 and len(str(digits)) <= most:
             return decimal(digits * unit, up=False, digits=most)
-    return f"{decimal(low, up=False, digits=2)} to {decimal(high, up=True, digits=2)}"
+    return between(low, high, 2)
 
 
-def interval_text(bounds: tuple[Fraction, Fraction]) -> str:
+def between(low: Fraction, high: Fraction, digits: int) -> str:
+    """Both bounds, rounded outwards to so many digits.
+
+    >>> between(Fraction(1, 3), Fraction(2, 3), 2)
+    '0.33 to 0.67'
+    """
+    return f"{decimal(low, up=False, digits=digits)} to {decimal(high, up=True, digits=digits)}"
+
+
+def interval_text(bounds: Bounds) -> str:
     """Both bounds, rounded outwards by a hundredth of their distance at most, each in two digits at
     least.
 
@@ -335,7 +348,7 @@ def percent(share: Fraction) -> str:
     return f"{decimal(100 * share, up=True, digits=2)} %"
 
 
-def share_text(bounds: tuple[Fraction, Fraction], certified: bool) -> str:
+def share_text(bounds: Bounds, certified: bool) -> str:
     """A share in percent by its bounds: both of them of a certified map, else four digits.
 
     >>> share_text((Fraction("0.389846"), Fraction("0.389847")), False)

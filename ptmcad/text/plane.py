@@ -15,6 +15,9 @@ from typing import Any
 
 from ptmcad.text.numerals import MAX_DIGITS, integer_of, integer_text, text_of
 
+Names = tuple[str, str]
+"""Those of the two axes."""
+
 
 @dataclass(frozen=True, slots=True)
 class PlanePolynomial:
@@ -54,11 +57,11 @@ class PlanePolynomial:
         total = sum(c * across[i] * along[j] for i, j, c in self.terms)
         return Fraction(total, across[0] * along[0])
 
-    def text(self, names: tuple[str, str] = ("x", "y")) -> str:
+    def text(self, names: Names = ("x", "y")) -> str:
         """The polynomial as text, such as ``2*x^2*y - 1``."""
         return plane_text(self.terms, names)
 
-    def to_sympy(self, names: tuple[str, str] = ("x", "y")) -> Any:
+    def to_sympy(self, names: Names = ("x", "y")) -> Any:
         """The polynomial as a SymPy expression in symbols of these names."""
         import sympy
 
@@ -66,7 +69,7 @@ class PlanePolynomial:
         return sympy.Add(*(c * x**i * y**j for i, j, c in self.terms))
 
     @classmethod
-    def parse(cls, text: str, names: tuple[str, str] = ("x", "y")) -> PlanePolynomial:
+    def parse(cls, text: str, names: Names = ("x", "y")) -> PlanePolynomial:
         """The polynomial that `text` wrote (for longer texts than the expression parser takes).
 
         Raises

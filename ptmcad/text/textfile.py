@@ -153,12 +153,7 @@ def lines_of(path: str | Path, longest: int, what: str) -> Iterator[str]:
 def _open(path: str | Path, what: str) -> int:
     """A descriptor of a regular file, opened without waiting for anyone at the other end."""
     # a pipe without a writer would hold a plain open() for ever
-    flags = (
-        os.O_RDONLY
-        | getattr(os, "O_NONBLOCK", 0)
-        | getattr(os, "O_BINARY", 0)
-        | getattr(os, "O_CLOEXEC", 0)
-    )
+    flags = os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0)
     try:
         descriptor = os.open(path, flags)
     except FileNotFoundError as error:
@@ -181,5 +176,5 @@ def _folder(path: str | Path, what: str) -> ConfigError:
 
 
 def _unreadable(path: str | Path, error: OSError | ValueError) -> ConfigError:
-    reason = (error.strerror if isinstance(error, OSError) else None) or str(error)
+    reason = getattr(error, "strerror", None) or str(error)
     return ConfigError(f"cannot be read: {reason}", file=str(path))

@@ -29,9 +29,8 @@ from fractions import Fraction
 from itertools import count, pairwise
 
 from ptmcad.answer.arrangement import Arrangement, correspondence
-from ptmcad.answer.changes import Changes
 from ptmcad.answer.counts import counted_by
-from ptmcad.answer.family import FamilyMap, SpaceTerms
+from ptmcad.answer.family import Changes, FamilyMap, SpaceTerms
 from ptmcad.answer.regionmap import Kind, Merge, RegionMap
 from ptmcad.errors import HypothesisError, shown
 from ptmcad.options import Progress

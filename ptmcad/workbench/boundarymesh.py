@@ -17,8 +17,7 @@ from math import acos, cos, inf, pi
 from typing import Any, NamedTuple
 
 from ptmcad.answer.boundarysurface import BoundarySurface
-from ptmcad.answer.changes import Changes
-from ptmcad.answer.family import FamilyMap
+from ptmcad.answer.family import Changes, FamilyMap
 from ptmcad.ask.changes import Members
 from ptmcad.ask.members import Common, in_common, restored
 from ptmcad.errors import ConfigError

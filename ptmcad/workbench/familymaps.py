@@ -8,8 +8,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import Any, Literal
 
-from ptmcad.answer.changes import TOLERANCE, Changes
-from ptmcad.answer.family import FamilyMap
+from ptmcad.answer.family import TOLERANCE, Changes, FamilyMap
 from ptmcad.answer.regionmap import RegionMap
 from ptmcad.ask.members import Common, in_common, members_of
 from ptmcad.errors import ConfigError, expect

@@ -18,8 +18,7 @@ from support.certified_map import certified_map, free_slice
 from support.replacing import replace
 
 import ptmcad
-from ptmcad.answer.location import Location
-from ptmcad.answer.regionmap import RegionMap, Status
+from ptmcad.answer.regionmap import Location, RegionMap, Status
 from ptmcad.cli import run
 from ptmcad.cover.connectivity import union_area
 from ptmcad.cover.rectangles import Cover

@@ -12,7 +12,7 @@ import jsonschema
 import pytest
 
 import ptmcad
-from ptmcad.answer.branches import Branch, Branches
+from ptmcad.answer.paths import Branch, Branches
 from ptmcad.ask.lines.diagram import SolutionsOnLine, branch_diagram
 from ptmcad.ask.quantities import OPTION, of_pose, quantities, quantity
 from ptmcad.cli import run

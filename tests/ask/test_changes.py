@@ -14,7 +14,7 @@ from support.examples import examples
 
 import ptmcad
 from ptmcad.answer.arrangement import correspondence
-from ptmcad.answer.changes import Change, Changes
+from ptmcad.answer.family import Change, Changes
 from ptmcad.ask import changes as asking
 from ptmcad.ask.members import in_common
 from ptmcad.errors import ConfigError, DegenerateSliceError, LimitReached

@@ -149,12 +149,12 @@ def changing(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def test_a_member_between_the_changes_and_the_changes_in_the_file(disc: Path) -> None:
-    stored = read_family((disc / "disc.json").read_text())
+    stored, files = read_family((disc / "disc.json").read_text())
     assert stored.changes is not None
     assert stored.changes.complete
     assert [change.value.text() for change in stored.changes] == ["0", "1", "2"]
     assert stored.values == stored.changes.between
-    assert len(stored.files) == 4
+    assert len(files) == 4
     asked = ptmcad.changes(disc / "disc.yaml")
     assert asked == stored.changes
     assert ptmcad.family(disc / "disc.yaml", "between", areas=False).changes == asked
@@ -269,7 +269,7 @@ def test_a_family_is_verified_member_by_member_with_its_changes(
 ) -> None:
     assert run(["verify", str(disc / "disc.json")]) == 0
     out = capsys.readouterr().out
-    stored = read_family((disc / "disc.json").read_text())
+    stored, files = read_family((disc / "disc.json").read_text())
     assert all(f"c = {value}\n" in out for value in stored.values)
     out = " ".join(out.split())
     assert (
@@ -277,9 +277,9 @@ def test_a_family_is_verified_member_by_member_with_its_changes(
         in out
     )
     assert "not checked changes complete" in out
-    for name in ("disc.json", *stored.files):
+    for name in ("disc.json", *files):
         (tmp_path / name).write_text((disc / name).read_text())
-    damaged = tmp_path / stored.files[-1]
+    damaged = tmp_path / files[-1]
     damaged.write_text(damaged.read_text().replace('"total": 2', '"total": 3'))
     assert run(["verify", str(tmp_path / "disc.json")]) == 1
     assert "violated: counts: cell 0 is said to have 3 solutions" in capsys.readouterr().err

@@ -11,8 +11,7 @@ from pathlib import Path
 import pytest
 from support.replacing import replace
 
-from ptmcad.answer.regionmap import RegionMap
-from ptmcad.answer.timings import COMPILATION
+from ptmcad.answer.regionmap import COMPILATION, RegionMap
 from ptmcad.cli import run
 from ptmcad.show.table import table
 

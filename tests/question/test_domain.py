@@ -20,8 +20,7 @@ from ptmcad.exact.exactmap import exact_map
 from ptmcad.model import Kind
 from ptmcad.question.config import slice_from_mapping
 from ptmcad.question.domain import proved, sign_of
-from ptmcad.question.signs import Subject
-from ptmcad.question.slice import Axis, Slice
+from ptmcad.question.slice import Axis, Slice, Subject
 from ptmcad.text.expressions import axis, constant
 from ptmcad.text.parsing import parse
 from ptmcad.text.tree import Negative

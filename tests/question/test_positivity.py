@@ -21,8 +21,7 @@ from ptmcad.question.positivity import (
     place,
     polynomial_value,
 )
-from ptmcad.question.signs import PROVED, Witness
-from ptmcad.question.slice import Axis
+from ptmcad.question.slice import PROVED, Axis, Witness
 from ptmcad.text.expressions import Expression, constant
 from ptmcad.text.parsing import parse
 

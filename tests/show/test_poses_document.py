@@ -15,8 +15,8 @@ from hypothesis import strategies as st
 
 from ptmcad import AlgebraicNumber, Enclosure, Poses, solve
 from ptmcad.model import ptm
-from ptmcad.show.columns import WIDTH
 from ptmcad.show.document.posedocument import FORMAT
+from ptmcad.show.table import WIDTH
 from ptmcad.text.numerals import fraction_of
 
 SCHEMA = json.loads(

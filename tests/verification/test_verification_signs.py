@@ -18,8 +18,7 @@ import ptmcad
 from ptmcad.answer.regionmap import RegionMap
 from ptmcad.cover.rectangles import Cover
 from ptmcad.question.positivity import Need, decide
-from ptmcad.question.signs import PROVED, Witness
-from ptmcad.question.slice import Axis, Count, Slice
+from ptmcad.question.slice import PROVED, Axis, Count, Slice, Witness
 from ptmcad.text.expressions import Expression, axis, constant
 from ptmcad.text.parsing import parse
 from ptmcad.verification.certified.parameterdomain import check_domain

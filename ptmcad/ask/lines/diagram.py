@@ -14,7 +14,7 @@ from collections.abc import Sequence
 from fractions import Fraction
 from math import cos, pi
 
-from ptmcad.answer.branches import Branch, Branches, BranchPoint
+from ptmcad.answer.paths import Branch, Branches, BranchPoint
 from ptmcad.answer.poses import Pose
 from ptmcad.answer.regionmap import Status
 from ptmcad.ask.lines.along import intervals

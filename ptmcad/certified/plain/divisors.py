@@ -20,8 +20,7 @@ from flint.utils.flint_exceptions import DomainError
 
 from ptmcad.certified.plain.harmonics import TrigonometricPolynomial
 from ptmcad.question.positivity import Need, decide
-from ptmcad.question.signs import PROVED
-from ptmcad.question.slice import Axis
+from ptmcad.question.slice import PROVED, Axis
 from ptmcad.text.expressions import Expression, Term, constant
 from ptmcad.text.flint_numbers import from_fraction, to_fraction
 

@@ -36,8 +36,7 @@ from ptmcad.certified.plain.harmonics import (
 from ptmcad.certified.plain.problem import Condition, Problem, Push, SpringCone
 from ptmcad.formulas.evaluation import mapped
 from ptmcad.question.positivity import Need, decide
-from ptmcad.question.signs import PROVED
-from ptmcad.question.slice import Axis
+from ptmcad.question.slice import PROVED, Axis
 from ptmcad.text.expressions import Expression, constant
 
 Pair = tuple[Expression, Expression]

@@ -8,6 +8,7 @@ wrong is a `ConfigError` with file, line and key, said once where it stands.
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
+from contextlib import suppress
 from fractions import Fraction
 
 from ptmcad.errors import ExpressionError, Faults, Place
@@ -17,15 +18,13 @@ from ptmcad.question.config.scalars import names_in_scalar, number_of, parsed
 from ptmcad.question.slice import Slice
 from ptmcad.text.entry import Scalar
 from ptmcad.text.expressions import Expression, Expressions, constant
-from ptmcad.text.numerals import text_of
+from ptmcad.text.numerals import Numbers, text_of
 from ptmcad.text.parsing import rational
 from ptmcad.text.syntax import NOT_NUMBERS, did_you_mean, names_in, parse
-from ptmcad.text.tree import Number, Tree, names_of, replaced, to_text
+from ptmcad.text.tree import Number, names_of, replaced, to_text
 
 
-def with_numbers(
-    record: Record, numbers: Mapping[str, Fraction], places: Mapping[str, Place]
-) -> Record:
+def with_numbers(record: Record, numbers: Numbers, places: Mapping[str, Place]) -> Record:
     """The record with numbers as the values of parameters, and in place of other names in what it
     writes.
 
@@ -99,29 +98,24 @@ def settled(record: Record, given: Mapping[str, Scalar]) -> Record:
     return record._replace(values={**record.values, **left})
 
 
-def _with_numbers(scalar: Scalar, numbers: Mapping[str, Fraction]) -> Scalar:
+def _with_numbers(scalar: Scalar, numbers: Numbers) -> Scalar:
     """A text with numbers in it; what cannot be read or has no value stays as it is, to be refused
     with its place.
+
+    A number is one number, so that slices that are the same say the same.
     """
     try:
         tree = parse(scalar.text)
     except ExpressionError:
         return scalar
     other = replaced(tree, {name: Number(number) for name, number in numbers.items()})
-    return scalar if other is tree else Scalar(_simplest(other), scalar.place)
-
-
-def _simplest(tree: Tree) -> str:
-    """A number as one number, so that slices that are the same say the same; other trees as they
-    are.
-    """
-    text = to_text(tree)
-    if names_of(tree):
-        return text
-    try:
-        return to_text(Number(rational(text)))
-    except ExpressionError:
-        return text
+    if other is tree:
+        return scalar
+    text = to_text(other)
+    if not names_of(other):
+        with suppress(ExpressionError):
+            text = to_text(Number(rational(text)))
+    return Scalar(text, scalar.place)
 
 
 def resolved(

@@ -8,7 +8,6 @@ stated value has been read, and is as exact and complete as any slice.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import replace
 from fractions import Fraction
 from typing import NamedTuple
@@ -28,7 +27,7 @@ from ptmcad.question.slice import Axes, Axis, Slice
 from ptmcad.text.entry import Scalar, Sequence, Tree, Written
 from ptmcad.text.expressions import Expression, Expressions, axis, constant
 from ptmcad.text.node import Node
-from ptmcad.text.numerals import text_of
+from ptmcad.text.numerals import Texts, text_of
 from ptmcad.text.parsing import parse
 from ptmcad.text.syntax import names_in
 
@@ -52,7 +51,7 @@ class Family(NamedTuple):
     free: Axis
     values: tuple[Fraction, ...]
     axes: Axes
-    text: Mapping[str, str]
+    text: Texts
 
     @property
     def name(self) -> str:
@@ -137,7 +136,7 @@ def checked_family(tree: Tree) -> Family:
     return family_of(record, faults)
 
 
-def fault_of_member(slice: Slice, text: Mapping[str, str], free: str, value: Fraction) -> str:
+def fault_of_member(slice: Slice, text: Texts, free: str, value: Fraction) -> str:
     """What shows that a slice is not a family's member at a value, in words; empty where it is.
 
     Parameters
@@ -157,7 +156,7 @@ def fault_of_member(slice: Slice, text: Mapping[str, str], free: str, value: Fra
 
 
 def member_like(
-    slice: Slice, text: Mapping[str, str], free: str, value: Fraction, turned: bool = False
+    slice: Slice, text: Texts, free: str, value: Fraction, turned: bool = False
 ) -> Slice:
     """Another member of the family of which a slice is one.
 
@@ -178,7 +177,7 @@ def member_like(
 
 
 def _resolved(
-    name: str, text: Mapping[str, str], known: Expressions, chain: tuple[str, ...] = ()
+    name: str, text: Texts, known: Expressions, chain: tuple[str, ...] = ()
 ) -> Expression:
     """A parameter in the axes, from the texts of those that it depends on."""
     if name in known:

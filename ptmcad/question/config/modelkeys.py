@@ -264,10 +264,8 @@ def _names_in_values(record: Tree) -> Iterator[str]:
     values = record.entries.get("parameters")
     for name, value in values.entries.items() if isinstance(values, Tree) else ():
         if isinstance(value, Scalar):
-            try:
+            with suppress(ExpressionError):  # a fault of that value
                 yield from (other for other in names_in(value.text) if other != name)
-            except ExpressionError:
-                continue  # a fault of that value
 
 
 def _doubtful(model: Model, faults: Faults, is_system: bool) -> frozenset[str]:

@@ -22,8 +22,16 @@ from ptmcad.question.counts import usual_count
 from ptmcad.question.domain import MAX_DEGREE, sign_of, sign_of_part
 from ptmcad.question.positivity import window_of
 from ptmcad.question.shipped import AXES
-from ptmcad.question.signs import PROVED, Finding, Subject
-from ptmcad.question.slice import Axes, Axis, Slice, count_fault, have_free_lengths
+from ptmcad.question.slice import (
+    PROVED,
+    Axes,
+    Axis,
+    Finding,
+    Slice,
+    Subject,
+    count_fault,
+    have_free_lengths,
+)
 from ptmcad.text.entry import Tree
 from ptmcad.text.expressions import Expression, Expressions, axis, constant
 from ptmcad.text.syntax import did_you_mean, parse

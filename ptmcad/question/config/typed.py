@@ -23,6 +23,7 @@ from ptmcad.question.shipped import FIRST, SECOND, RecordSource, record_tree
 from ptmcad.question.slice import Slice
 from ptmcad.text.entry import Scalar, from_python
 from ptmcad.text.expressions import values_at
+from ptmcad.text.numerals import Texts
 from ptmcad.text.syntax import did_you_mean
 
 
@@ -156,7 +157,7 @@ def point_from_mapping(
 
 
 def point_from_options(
-    config: str | Path | None = None, at: Mapping[str, str] | None = None, sets: Iterable[str] = ()
+    config: str | Path | None = None, at: Texts | None = None, sets: Iterable[str] = ()
 ) -> tuple[Model, dict[str, Fraction]]:
     """The model and its parameters at the point of the command line's options, with or without a
     record under them.
@@ -213,7 +214,7 @@ def point_from(
     return question.model, without_shorthands(values_at(question.parameters, x, y), question.model)
 
 
-def units_of(question: RecordSource | Slice) -> Mapping[str, str]:
+def units_of(question: RecordSource | Slice) -> Texts:
     """The units that a record or slice declares, of ``length`` and ``force``.
 
     Raises

@@ -148,9 +148,6 @@ def maximum(over: str, digits: int) -> Codec[Maximum]:
     def text(value: End) -> str:
         return AlgebraicNumber.of(value).text(digits)
 
-    def decimal(value: Enclosure) -> str:
-        return next((value.text(n) for n in range(digits, 0, -1) if value.settles(n)), "")
-
     def made(attainment: Attainment, **entries: Any) -> Maximum:
         decided = attainment is not Attainment.UNDECIDED
         return Maximum(
@@ -163,7 +160,9 @@ def maximum(over: str, digits: int) -> Codec[Maximum]:
         lambda n: n if n.exact is None else n.exact,
     )
     enclosed: Codec[Enclosure] = record(
-        lambda enclosure: enclosure, decimal=derived(decimal), enclosure=Key(INTERVAL, itself)
+        lambda enclosure: enclosure,
+        decimal=derived(lambda enclosure: enclosure.settled_text(digits) or ""),
+        enclosure=Key(INTERVAL, itself),
     )
     return record_of(
         Maximum, {Enclosure: enclosed}, made, place=choice(Place, by_name), attained=None,

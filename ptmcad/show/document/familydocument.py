@@ -7,8 +7,7 @@ The maps themselves are documents of their own, in files beside this one.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping
 from fractions import Fraction
 from itertools import pairwise
 from operator import itemgetter
@@ -16,8 +15,7 @@ from pathlib import PurePath
 from typing import Any
 
 from ptmcad.answer.arrangement import SIDES, Arrangement
-from ptmcad.answer.changes import TOLERANCE, Changes
-from ptmcad.answer.family import FamilyMap, SpaceTerms
+from ptmcad.answer.family import TOLERANCE, Changes, FamilyMap
 from ptmcad.question.slice import Axis
 from ptmcad.show.document.exactnumbers import ALGEBRAIC, AXIS, LINE, NUMBER
 from ptmcad.text.codec import (
@@ -41,49 +39,13 @@ MAX_DOCUMENT = 60_000_000
 MAX_MEMBERS = 10_000
 
 
-@dataclass(frozen=True, slots=True)
-class StoredFamily:
-    """What a document says; of each member the value and the name of the file beside it."""
-
-    name: str
-    title: str
-    free: Axis
-    text: Mapping[str, str]
-    surfaces: tuple[SpaceTerms, ...]
-    members: tuple[tuple[Fraction, str], ...]
-    changes: Changes | None = None
-
-    @property
-    def values(self) -> tuple[Fraction, ...]:
-        return tuple(value for value, _ in self.members)
-
-    @property
-    def files(self) -> tuple[str, ...]:
-        return tuple(file for _, file in self.members)
+def write_family(family: FamilyMap) -> str:
+    """The document as JSON text; it names the members' files by their slices."""
+    return document_text(FORMAT, _codec(family.free).write(family))
 
 
-def write_family(family: FamilyMap, files: Sequence[str]) -> str:
-    """The document as JSON text.
-
-    Parameters
-    ----------
-    files : names of the members' files.
-    """
-    members = tuple(zip(family.values, files, strict=True))
-    stored = StoredFamily(
-        family.name,
-        family.title,
-        family.free,
-        family.text,
-        family.surfaces,
-        members,
-        family.changes,
-    )
-    return document_text(FORMAT, _codec(family.free).write(stored))
-
-
-def read_family(text: str) -> StoredFamily:
-    """What `write_family` wrote.
+def read_family(text: str) -> tuple[FamilyMap, tuple[str, ...]]:
+    """What `write_family` wrote: the family without its members' maps, and the files of these.
 
     Raises
     ------
@@ -91,19 +53,24 @@ def read_family(text: str) -> StoredFamily:
         When the text is not such a document.
     """
     document = opened(text, FORMAT, MAX_DOCUMENT, "ptmcad classify")
-    return _codec(AXIS.read(document.entry("free"))).read(document)
+    found: tuple[FamilyMap, tuple[str, ...]]
+    found = _codec(AXIS.read(document.entry("free"))).read(document)
+    return found
 
 
-def _codec(free: Axis) -> Codec[StoredFamily]:
+def _codec(free: Axis) -> Codec[Any]:
     """The codec of a family with this free parameter."""
     name = line(300)
     member: Codec[tuple[Fraction, str]] = record(
         lambda value, file: (value, file), value=Key(RATIONAL, itemgetter(0)),
         file=Key(converted(name, str, _file), itemgetter(1)),
     )  # fmt: skip
-    return record_of(
-        StoredFamily, {Axis: AXIS, SpaceTerms: listed(_TERM)}, _family, name=name, title=name,
-        parameters=Key(named(LINE), field="text"), members=listed(member),
+    return record(
+        _family, name=name, title=name, free=AXIS, parameters=Key(named(LINE), field="text"),
+        surfaces=listed(listed(_TERM)),
+        members=Key(
+            listed(member), lambda family: [(value, f"{m.slice.name}.json") for value, m in family]
+        ),
         changes=Key(changes_codec(free), default=None),
     )  # fmt: skip
 
@@ -115,9 +82,12 @@ def _file(name: str) -> str:
     return name
 
 
-def _family(**entries: Any) -> StoredFamily:
-    found = StoredFamily(**entries)
-    free, values = found.free, found.values
+def _family(
+    members: tuple[tuple[Fraction, str], ...], **entries: Any
+) -> tuple[FamilyMap, tuple[str, ...]]:
+    values = tuple(value for value, _ in members)
+    found = FamilyMap(values=values, members=(), **entries)
+    free = found.free
     if not all(found.surfaces):
         raise ValueError("a surface has no terms")
     if found.text.get(free.name, free.name) != free.name:
@@ -130,7 +100,7 @@ def _family(**entries: Any) -> StoredFamily:
         or len({*found.surfaces}) < len(found.surfaces)
     ):
         raise ValueError("a member is outside of the range, or a surface is listed twice")
-    return found
+    return found, tuple(file for _, file in members)
 
 
 def _term(node: Node) -> tuple[tuple[int, ...], int]:

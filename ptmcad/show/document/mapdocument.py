@@ -59,7 +59,7 @@ from ptmcad.text.codec import (
 from ptmcad.text.documents import document_text
 from ptmcad.text.node import Node, opened
 from ptmcad.text.numerals import decimal
-from ptmcad.text.plane import PlanePolynomial
+from ptmcad.text.plane import Names, PlanePolynomial
 
 FORMAT = "ptmcad-region-map/2"
 MAX_TEXT = 60_000_000
@@ -113,7 +113,7 @@ _WHERE_COUNTED = Key(NATURAL, default=None, entry_of="further")
 _STATUS = choice(Status).narrowed(enum=["exact", "certified", "partial", "undecided"])
 
 
-def _codec(names: tuple[str, str], certified: bool, slice: Slice | None = None) -> Codec[RegionMap]:
+def _codec(names: Names, certified: bool, slice: Slice | None = None) -> Codec[RegionMap]:
     """The codec of a map over axes of these names.
 
     Parameters
@@ -142,11 +142,9 @@ def _codec(names: tuple[str, str], certified: bool, slice: Slice | None = None) 
     }  # fmt: skip
     # an area that a checker is to confirm needs no more digits; one that is a sum of rectangles is
     # exact as it is
-    area: Codec[Any] = (
-        listed(SHARE, 2)
-        if certified
-        else Codec(_outwards, listed(SHARE, 2).read, listed(SHARE, 2).schema)
-    )
+    area: Codec[Any] = listed(SHARE, 2)
+    if not certified:
+        area = area._replace(write=lambda ends: [decimal(ends[0], False), decimal(ends[1], True)])
     known[Status] = _STATUS
     known[Component] = record_of(Component, known, **unless_default(Component, "continuum"))
     predicates = {
@@ -166,12 +164,12 @@ def _codec(names: tuple[str, str], certified: bool, slice: Slice | None = None) 
     )  # fmt: skip
 
 
-def _point(node: Node, names: tuple[str, str]) -> Point:
+def _point(node: Node, names: Names) -> Point:
     values = node.record(names, names)
     return Point(names, values[names[0]].fraction(), values[names[1]].fraction())
 
 
-def _axis(node: Node, names: tuple[str, str]) -> int:
+def _axis(node: Node, names: Names) -> int:
     if (name := node.text()) not in names:
         raise node.fault(f"is {name[:40]!r}, which is not an axis")
     return names.index(name)
@@ -189,10 +187,6 @@ def _null(node: Node) -> None:
 
 
 _NO_STACK: Codec[None] = Codec(lambda stack: stack, _null, {"type": "null"})
-
-
-def _outwards(area: tuple[Fraction, Fraction]) -> list[str]:
-    return [decimal(area[0], up=False), decimal(area[1], up=True)]
 
 
 def schema() -> Mapping[str, Any]:

@@ -31,7 +31,7 @@ from ptmcad.text.expressions import Expression
 from ptmcad.text.expressions import axis as axis_function
 from ptmcad.text.node import Node
 from ptmcad.text.parsing import parse
-from ptmcad.text.plane import PlanePolynomial
+from ptmcad.text.plane import Names, PlanePolynomial
 from ptmcad.text.syntax import NAME
 from ptmcad.version import __version__
 
@@ -119,7 +119,7 @@ def _slice(node: Node) -> Slice:
     return found
 
 
-def polynomial_over(names: tuple[str, str]) -> Codec[PlanePolynomial]:
+def polynomial_over(names: Names) -> Codec[PlanePolynomial]:
     """The codec of a polynomial in axes of these names."""
 
     def made(text: str) -> PlanePolynomial:
@@ -131,7 +131,7 @@ def polynomial_over(names: tuple[str, str]) -> Codec[PlanePolynomial]:
     return converted(TEXT, lambda polynomial: polynomial.text(names), made)
 
 
-def slice_over(names: tuple[str, str], **keys: Codec[Any] | Key | None) -> Codec[Slice]:
+def slice_over(names: Names, **keys: Codec[Any] | Key | None) -> Codec[Slice]:
     """The codec of a slice over axes of these names, with some keys in place of its own."""
     known = {name: axis_function(k) for k, name in enumerate(names)}
     expression: Codec[Expression] = Codec(

@@ -26,32 +26,19 @@ def end_text(end: AnyEnd, digits: int) -> str:
     """An end as a decimal; of one that is enclosed as many digits as are known."""
     if isinstance(end, Enclosure):
         return known(end, digits)
-    if isinstance(end, Fraction):
-        return Enclosure(end, end).text(digits)
-    exact = end.exact
-    if exact is not None:
+    end = AlgebraicNumber.of(end)
+    if (exact := end.exact) is not None:
         return Enclosure(exact, exact).text(digits)
     while not (found := Enclosure(end.low, end.high)).settles(digits):
         end = refined(end, (end.high - end.low) / 2**64)
     return found.text(digits)
 
 
-def settled(enclosure: Enclosure, digits: int) -> str | None:
-    """The text of an enclosure that cannot be made narrower; None when it does not settle a single
-    digit.
-    """
-    for fewer in range(digits, 0, -1):
-        if enclosure.settles(fewer):
-            return enclosure.text(fewer)
-    return None
-
-
 def known(enclosure: Enclosure, digits: int) -> str:
     """The text of a narrow enclosure; where it holds a decimal of so many digits, which it cannot
     settle, that one.
     """
-    text = settled(enclosure, digits)
-    if text is not None:
+    if (text := enclosure.settled_text(digits)) is not None:
         return text
     size = max(abs(enclosure.low), abs(enclosure.high))
     unit = Fraction(10) ** (magnitude(size) + 1 - digits) if size else Fraction(1)
@@ -67,7 +54,7 @@ def narrowly_known(enclosure: Enclosure, digits: int) -> str | None:
     """As many digits as the enclosure settles, or what `known` says of one that is narrow; None of
     a wider one.
     """
-    text = settled(enclosure, digits)
+    text = enclosure.settled_text(digits)
     return known(enclosure, digits) if text is None and enclosure.radius < NARROW else text
 
 
@@ -85,7 +72,7 @@ def width_text(interval: Span, digits: int) -> str:
         if found.settles(digits):
             return found.text(digits)
         if bits > 4 * MAX_DIGITS:
-            return settled(found, digits) or "0"
+            return found.settled_text(digits) or "0"
         bits *= 2
 
 

@@ -14,10 +14,10 @@ from ptmcad.answer.intervals import AnyEnd, Change, CountIntervals, Span
 from ptmcad.answer.widths import Attainment, Maximum, OperationWidths, WidthRow
 from ptmcad.answer.words import sought
 from ptmcad.model import Model
-from ptmcad.show.columns import aligned
-from ptmcad.show.ranges.endtext import end_text, settled, width_text
+from ptmcad.show.ranges.endtext import end_text, width_text
+from ptmcad.show.table import aligned
 from ptmcad.text.enclosure import AlgebraicNumber, Enclosure
-from ptmcad.text.numerals import decimal, equalities, rounded, shortest_text
+from ptmcad.text.numerals import between, equalities, rounded, shortest_text
 from ptmcad.text.plane import PlanePolynomial
 
 MAX_POLYNOMIAL = 60
@@ -124,13 +124,8 @@ def _range_text(interval: Span, digits: int) -> str:
     edges = [
         side for side, end in (("lower", interval.low), ("upper", interval.high)) if _is_edge(end)
     ]
-    note = ""
-    if edges:
-        note = (
-            f" (its {edges[0]} end is the window's edge)"
-            if len(edges) == 1
-            else " (the whole window)"
-        )
+    notes = ("", " (its {} end is the window's edge)", " (the whole window)")
+    note = notes[len(edges)].format(*edges)
     low, high = _side_text(interval.low, digits, up=True), _side_text(interval.high, digits)
     return f"{low} to {high}, width {width_text(interval, digits)}{note}"
 
@@ -179,10 +174,9 @@ def _width_cells(row: WidthRow, span: Span, digits: int) -> Iterator[str]:
 
 def maximum_text(found: Maximum, over: str, digits: int) -> str:
     """A maximum in words."""
-    low, high = (
-        decimal(end, up, 4) for end, up in ((found.width.low, False), (found.width.high, True))
-    )
-    return f"width {settled(found.width, digits) or f'from {low} to {high}'}, {found.words(over, digits)}"
+    width = found.width
+    known = width.settled_text(digits) or f"from {between(width.low, width.high, 4)}"
+    return f"width {known}, {found.words(over, digits)}"
 
 
 def widest_text(found: OperationWidths) -> str:

@@ -9,15 +9,24 @@ from collections.abc import Sequence
 
 from flint import arb, ctx
 
-from ptmcad.answer.branches import Branch, Branches, BranchPoint
-from ptmcad.answer.paths import Fate, PathEnd, PathPoint, PosePath, PosePaths, Target
+from ptmcad.answer.paths import (
+    Branch,
+    Branches,
+    BranchPoint,
+    Fate,
+    PathEnd,
+    PathPoint,
+    PosePath,
+    PosePaths,
+    Target,
+)
 from ptmcad.answer.words import assignments, followed, listed, noun, with_article
 from ptmcad.model import Model, built_in
 from ptmcad.model.work import acting
-from ptmcad.show.columns import aligned
-from ptmcad.show.ranges.endtext import end_text, known, narrowly_known, settled
+from ptmcad.show.ranges.endtext import end_text, known, narrowly_known
+from ptmcad.show.table import aligned
 from ptmcad.show.units import with_unit
-from ptmcad.text.balls import ball_of, enclosure_of
+from ptmcad.text.balls import ball_over, enclosure_of
 from ptmcad.text.enclosure import Enclosure
 from ptmcad.text.numerals import equalities, shortest_text
 
@@ -126,12 +135,9 @@ def _end(end: PathEnd, found: PosePaths, digits: int) -> str:
         return f"{what}; the pose goes on, without a snap, as {target}"
     drop = None
     if end.energy is not None and end.target_energy is not None:
-        drop = settled(
-            Enclosure(
-                end.energy.low - end.target_energy.high, end.energy.high - end.target_energy.low
-            ),
-            5,
-        )
+        drop = Enclosure(
+            end.energy.low - end.target_energy.high, end.energy.high - end.target_energy.low
+        ).settled_text(5)
     heights = _heights(model)
     kind = f" ({_posture(end.target, heights)})" if heights else ""
     lower = drop or "an undecided amount"
@@ -186,6 +192,6 @@ def degrees(angle: Enclosure, digits: int) -> str:
     distinguished from it.
     """
     with ctx.workprec(200):
-        ball = ball_of(angle.low).union(ball_of(angle.high)) * 180 / arb.pi()
+        ball = ball_over(angle.low, angle.high) * 180 / arb.pi()
         text = narrowly_known(enclosure_of(ball), digits)
     return UNDECIDED if text is None else f"{text}°"

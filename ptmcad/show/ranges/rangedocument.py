@@ -12,7 +12,6 @@ from functools import partial
 from operator import attrgetter
 from typing import Any
 
-from ptmcad.answer.branches import Branches
 from ptmcad.answer.counts import Counts, MorseIndex
 from ptmcad.answer.intervals import (
     AnyEnd,
@@ -23,14 +22,14 @@ from ptmcad.answer.intervals import (
     OperationSpan,
     Span,
 )
-from ptmcad.answer.paths import Fate, PathEnd, PathPoint, PosePath, PosePaths, Target
+from ptmcad.answer.paths import Branches, Fate, PathEnd, PathPoint, PosePath, PosePaths, Target
 from ptmcad.answer.regionmap import Kind
 from ptmcad.answer.widths import Attainment, OperationWidths, WidthRow
 from ptmcad.question.slice import Axis
 from ptmcad.show.document.designdocument import maximum
 from ptmcad.show.document.exactnumbers import INDEX, with_decimal
 from ptmcad.show.document.slicedocument import VERSIONS
-from ptmcad.show.ranges.endtext import end_text, known, narrowly_known, settled, width_text
+from ptmcad.show.ranges.endtext import end_text, known, narrowly_known, width_text
 from ptmcad.text.codec import (
     COUNT,
     DATA,
@@ -74,7 +73,9 @@ def _exact(digits: int) -> Codec[Any]:
 
 def _enclosed(digits: int) -> Codec[Enclosure]:
     """The codec of an enclosed end, with a decimal of as many digits as are known."""
-    return record_of(Enclosure, decimal=derived(partial(settled, digits=digits), optional(TEXT)))
+    return record_of(
+        Enclosure, decimal=derived(lambda end: end.settled_text(digits), optional(TEXT))
+    )
 
 
 def _exact_places(digits: int) -> dict[Any, Codec[Any]]:
@@ -197,7 +198,7 @@ _POINTS: Known = {
     for kind in (PathPoint, Target)
 }
 _ENERGY: Codec[Any] = in_words(
-    lambda energy: energy and settled(energy, PATH_DIGITS), optional(TEXT)
+    lambda energy: energy and energy.settled_text(PATH_DIGITS), optional(TEXT)
 )
 _EXACT, _ENCLOSED = _exact(PATH_DIGITS), _enclosed(PATH_DIGITS)
 _ANY_END: Codec[Any] = Codec(

@@ -13,8 +13,7 @@ from typing import Any
 
 from matplotlib.figure import Figure
 
-from ptmcad.answer.branches import Branch, Branches
-from ptmcad.answer.paths import Fate, PathPoint, PosePaths, Target
+from ptmcad.answer.paths import Branch, Branches, Fate, PathPoint, PosePaths, Target
 from ptmcad.answer.words import followed
 from ptmcad.question.slice import Slice
 from ptmcad.show.ranges.pathtable import kind

@@ -20,10 +20,9 @@ from typing import Any
 from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 
-from ptmcad.answer.branches import Branches
 from ptmcad.answer.counts import Counts, MorseIndex
 from ptmcad.answer.intervals import AnyEnd, CountIntervals, End, Event, lower, upper
-from ptmcad.answer.paths import PosePaths
+from ptmcad.answer.paths import Branches, PosePaths
 from ptmcad.answer.widths import OperationWidths
 from ptmcad.answer.words import counted, noun, several, sought
 from ptmcad.question.slice import Axis, Slice

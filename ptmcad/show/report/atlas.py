@@ -26,7 +26,7 @@ from ptmcad.show.render.polylines import GRID
 from ptmcad.show.report.mapsvg import outline_data, paints, pattern_defs
 from ptmcad.show.report.reportpage import asset, harmless, policy_of, template
 from ptmcad.show.report.sections import swatch
-from ptmcad.show.sweeptable import count_order, middle
+from ptmcad.show.sweeptable import counts_in, middle
 from ptmcad.show.table import count_text, in_order
 from ptmcad.text.numerals import fraction_of, shortest_text
 from ptmcad.version import __version__
@@ -171,9 +171,7 @@ def _data(
 ) -> dict[str, Any]:
     """What the script shows."""
     places = {name: {value: k for k, value in enumerate(found)} for name, found in values.items()}
-    counts = sorted(
-        {a.count for m in members if m.summary for a in m.summary.areas}, key=count_order
-    )
+    counts = counts_in(members)
     along = next((m.summary.widest.along for m in members if m.summary and m.summary.widest), "")
     over = next((name for name, _, _ in frame[0] if name != along), "")
     return {

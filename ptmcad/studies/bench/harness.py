@@ -24,7 +24,7 @@ import pandas as pd
 
 from ptmcad.answer.regionmap import RegionMap
 from ptmcad.question.slice import Slice
-from ptmcad.show.columns import aligned
+from ptmcad.show.table import aligned
 from ptmcad.studies.bench.error import Truth
 from ptmcad.studies.bench.process import Usage, run
 from ptmcad.studies.texts import installed

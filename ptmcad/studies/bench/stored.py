@@ -21,7 +21,7 @@ import pandas as pd
 
 from ptmcad.errors import ConfigError
 from ptmcad.question.counts import Count
-from ptmcad.show.columns import aligned
+from ptmcad.show.table import aligned
 from ptmcad.studies.bench.error import FIGURES
 from ptmcad.studies.bench.harness import FORMAT, Row, measurement
 from ptmcad.studies.bench.study import RIVALS

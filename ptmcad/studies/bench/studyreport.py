@@ -14,8 +14,8 @@ from typing import Any
 import pandas as pd
 
 from ptmcad.process.output import text_writer, write_files
-from ptmcad.show.columns import aligned
 from ptmcad.show.render.printing import save as save_figure
+from ptmcad.show.table import aligned
 from ptmcad.studies import texts as tables
 from ptmcad.studies.bench.harness import Row
 from ptmcad.studies.bench.stored import finest, frame, read_study, write_study, write_table

@@ -33,7 +33,7 @@ from ptmcad.extras import require
 from ptmcad.model import ptm
 from ptmcad.model.evaluate import value_at
 from ptmcad.options import Progress
-from ptmcad.show.columns import aligned
+from ptmcad.show.table import aligned
 from ptmcad.studies.stress.case import FEW, Case, Degenerate, Question, degenerate, free_lengths
 from ptmcad.studies.stress.doubleprecision import sextic_poses
 from ptmcad.studies.stress.judgement import Row, judge
