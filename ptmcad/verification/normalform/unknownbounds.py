@@ -55,7 +55,7 @@ Row = Mapping[Key, arb]
 """A polynomial by its waves."""
 Monomials = dict[tuple[int, ...], arb]
 """By the powers of what is not bounded."""
-_Linear = tuple[list[_Balls], _Balls, list[tuple[arb, _Balls, _Balls]]]
+_Linear = tuple[Sequence[_Balls], _Balls, Sequence[tuple[arb, _Balls, _Balls]]]
 """Equations A s + b less the parts of springs, as `bounds_of` has them."""
 _ZERO, _ANY = arb(0), arb(0, 1)
 
