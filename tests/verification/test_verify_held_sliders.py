@@ -25,7 +25,7 @@ pytest.importorskip("numba")
 
 import ptmcad
 from ptmcad.answer.regionmap import RegionMap
-from ptmcad.verification.normalform import held, unknownbounds
+from ptmcad.verification.normalform import unknownbounds
 from ptmcad.verification.normalform.boxes import Unproved
 from ptmcad.verification.normalform.unknownbounds import half_widths
 from ptmcad.verification.normalform.waves import Form, form_of
@@ -107,7 +107,7 @@ def test_bounds_need_a_dominant_diagonal_in_all_of_the_balls(
     with pytest.raises(Unproved, match="no bound of the unknown x"):
         half_widths(form(APART), whole)
     assert abs(found.at[0]) < half_widths(form(APART), balls(values))[0]
-    monkeypatch.setattr(held, "MAX_SHARE", inf)
+    monkeypatch.setattr(unknownbounds, "MAX_SHARE", inf)
     assert abs(found.at[0]) > half_widths(form(APART), whole)[0]
 
 

@@ -18,7 +18,6 @@ import operator
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
-from math import inf
 from types import MappingProxyType
 
 from flint import arb
@@ -46,7 +45,7 @@ from ptmcad.verification.normalform.operations import (
 from ptmcad.verification.normalform.waves import Form, Sides
 
 Matrix = list[list[arb]]
-_ZERO, _ANY = arb(0), arb(0, 1)
+_ZERO, _ANY, _UNKNOWN = arb(0), arb(0, 1), arb("nan")
 _Step = tuple[int, Callable[[arb, arb], arb], int, int]
 """The number of a value, and of what operands."""
 
@@ -87,6 +86,7 @@ class _FormFormulas:
     Attributes
     ----------
     squared : of each spring |d|^2.
+    numbers : of the Jacobian's entries, row by row, and of what is positive, by its name.
     steady : the operations in which no unknown is.
     """
 
@@ -99,20 +99,17 @@ class _FormFormulas:
         directions = m.directions()
         self.equations = m.equations(directions)
         rows = m.hessian(directions)
-        self.jacobian = [entry for row in rows for entry in row]
-        self.determinant = (
-            [f.determinant([[row[k] for k in form.closing] for row in rows])]
-            if form.closing
-            else []
-        )
         self.squared = [f.dot(s.vector, s.vector) for s in m.cones]
         self.may_be_short = [k for k, s in enumerate(m.cones) if s.name not in sides]
-        ahead = [m.ahead(k) for k, s in enumerate(m.cones) if s.name in sides]
-        self.conditions = {
-            "ahead": ahead,
+        stability = list(map(m.waves, form.stability))
+        if form.closing:
+            stability = [f.determinant([[row[k] for k in form.closing] for row in rows])]
+        self.numbers = {
+            "ahead": [m.ahead(k) for k, s in enumerate(m.cones) if s.name in sides],
             "inequalities": list(map(m.waves, form.inequalities)),
-            "stability": list(map(m.waves, form.stability)),
+            "stability": stability,
             "margins": [m.waves(margin.value) for margin in form.margins],
+            "jacobian": [entry for row in rows for entry in row],
         }
         self._moving = set[int]()
         for n, (code, a, b) in enumerate(f.rows):
@@ -125,16 +122,15 @@ class _FormFormulas:
         )
         self._first = f.needed([*self.equations, *self.squared])
         self.first = self._in_order(self._first & self._moving)
-        self._known: dict[tuple[int, ...], list[_Step]] = {}
+        self._known: dict[tuple[str, ...], tuple[list[int], list[_Step]]] = {}
 
-    def further(self, numbers: Sequence[int]) -> list[_Step]:
-        """The operations that some values need besides the first ones."""
-        key = (*numbers,)
-        if key not in self._known:
-            self._known[key] = self._in_order(
-                (self.list.needed(numbers) - self._first) & self._moving
-            )
-        return self._known[key]
+    def further(self, names: tuple[str, ...]) -> tuple[list[int], list[_Step]]:
+        """The numbers of some values, and the operations that they need besides the first ones."""
+        if names not in self._known:
+            numbers = [n for name in names for n in self.numbers[name]]
+            needed = (self.list.needed(numbers) - self._first) & self._moving
+            self._known[names] = numbers, self._in_order(needed)
+        return self._known[names]
 
     def _in_order(self, numbers: Collection[int]) -> list[_Step]:
         return [step for n in sorted(numbers) if (step := self._step(n)) is not None]
@@ -172,25 +168,26 @@ class BallJet:
     ----------
     values : zero at solutions.
     conditions : what is positive at solutions that count.
-    short : the numbers of the springs that may have no length; if there are any, the Jacobian is
-        not known.
+    short : whether a spring may have no length; the Jacobian is of no finite numbers then.
     """
 
     values: list[arb]
     conditions: list[arb]
-    short: list[int]
+    short: bool
     formulas: _FormFormulas
     known: list[arb]
 
-    def evaluated(self, numbers: Sequence[int]) -> list[arb]:
-        """Some of the formulas."""
-        _run(self.formulas.further(numbers), self.known)
+    def of(self, name: str) -> list[arb]:
+        """Some of the formulas; not finite where they are not known."""
+        numbers, steps = self.formulas.further((name,))
+        _run(steps, self.known)
         return [self.known[n] for n in numbers]
 
     @cached_property
     def jacobian(self) -> Matrix:
         """The derivatives, which points and most boxes that are discarded do without."""
-        n, entries = len(self.values), self.evaluated(self.formulas.jacobian)
+        n = len(self.values)
+        entries = [_UNKNOWN] * (n * n) if self.short else self.of("jacobian")
         return [entries[n * i : n * i + n] for i in range(n)]
 
 
@@ -200,9 +197,8 @@ class BallEquations:
     Parameters
     ----------
     values : a ball for each parameter; no pull of a spring is negative.
-    conditions : the attributes of the form with the conditions that are asked for.
-    with_determinant : whether that of the Jacobian is a further condition, with its columns as
-        `Form.closing` has them.
+    conditions : "inequalities" and "stability", as far as they are asked for; with closed loops the
+        latter is the determinant of the Jacobian, with its columns as `Form.closing` has them.
     sides : of springs on one line each, on which side of length zero solutions are looked for.
         There every one of these has its direction, also where it is short, and a further condition,
         which comes before all others.
@@ -218,15 +214,9 @@ class BallEquations:
         form: Form,
         values: Mapping[str, arb],
         conditions: Sequence[str] = (),
-        with_determinant: bool = False,
         sides: Sides = MappingProxyType({}),
     ):
-        self.form, self.values, self.sides, self._with_determinant = (
-            form,
-            dict(values),
-            sides,
-            with_determinant,
-        )
+        self.form, self.values, self.sides = form, dict(values), sides
         # one that pulls nothing at a point has its sides there, too, as all other choices of them
         # have
         pulling = [c.name for c in form.cones if c.name in sides or not (ball(c.pull, values) == 0)]  # noqa: SIM201
@@ -238,8 +228,8 @@ class BallEquations:
             ):
                 raise Unproved(f"the line of spring {cone.name} may have no direction")
         of = self._formulas = _formulas_of(form, (*values,), (*sides.items(),), (*pulling,))
-        self._conditions = [n for name in ("ahead", *conditions) for n in of.conditions[name]]
-        self._steps = [*of.first, *of.further(self._conditions)]
+        self._conditions, further = of.further(("ahead", *conditions))
+        self._steps = [*of.first, *further]
         self._known = [_ZERO] * len(of.list.rows)
         for n, number in of.list.numbers.items():
             self._known[n] = ball_of(number)
@@ -264,10 +254,6 @@ class BallEquations:
         for n, value in zip(of.model.unknowns, at, strict=True):
             known[n] = value
         _run(self._steps, known)
-        short = [k for k in of.may_be_short if not known[of.squared[k]] > 0]
-        jet = BallJet(
-            [known[n] for n in of.equations], [known[n] for n in self._conditions], short, of, known
-        )
-        if self._with_determinant:
-            jet.conditions.extend([arb(0, inf)] if short else jet.evaluated(of.determinant))
-        return jet
+        short = not all(known[of.squared[k]] > 0 for k in of.may_be_short)
+        values = [known[n] for n in of.equations]
+        return BallJet(values, [known[n] for n in self._conditions], short, of, known)

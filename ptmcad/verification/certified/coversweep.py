@@ -2,8 +2,8 @@
 
 Guarantee: exact. All coordinates are integers or rationals.
 
-From strip to strip gaps and blocks go on, but in zones in which rectangles begin or end, with what
-touches these: what is new there is joined with what was there.
+From strip to strip gaps and blocks go on, but between the first and the last rectangle that begins
+or ends: what is new there is joined with what was there.
 
 The engine finds the same by subdivision of the window.
 """
@@ -17,18 +17,19 @@ from dataclasses import dataclass
 from fractions import Fraction
 from itertools import pairwise
 from operator import attrgetter
+from typing import NamedTuple
 
 from ptmcad.cover.rectangles import Cover
 
 Entry = tuple[int, int]
 """Of a rectangle: left, right."""
-
+Span = tuple[int, int, bool]
+"""Of a gap or a block: left, right, and whether it is free."""
 
 _left, _right = attrgetter("left"), attrgetter("right")
 
 
-@dataclass(frozen=True, slots=True)
-class Item:
+class Item(NamedTuple):
     """A gap or a block of a strip, with its node."""
 
     left: int
@@ -100,149 +101,93 @@ def sweep(cover: Cover) -> CoverSweep:
         begin[bottom].append((left, right))
         end[top].append((left, right))
     lines = sorted({0, cover.steps, *begin, *end})
-    found = _Strips(cover.steps)
-    active: list[Entry] = []
+    sets, touching = _Sets(), set[tuple[int, int]]()
+    active, rows = list[Entry](), list[tuple[Item, ...]]()
+    row: tuple[Item, ...] = ()
+    ends: list[tuple[tuple[Item, ...], int]] = []
     for low in lines[:-1]:
         for entry in end[low]:
             del active[bisect_left(active, entry)]
         for entry in begin[low]:
             insort(active, entry)
-        found.add(low, [*end[low], *begin[low]], active)
-    return found.result(tuple(lines))
+        if row:
+            changed = [*end[low], *begin[low]]
+            first, last = _meeting(row, min(changed)[0], max(right for _, right in changed))
+            left, right = row[first].left, row[last - 1].right
+        else:
+            first, last, left, right = 0, 0, 0, cover.steps
+        inner = active[bisect_left(active, (left,)) : bisect_left(active, (right,))]
+        new = tuple(Item(*span, sets.added()) for span in _gaps_and_blocks(inner, left, right))
+        old, row = row[first:last], row[:first] + new + row[last:]
+        ends += [(old, low), (new, -low)]
+        rows.append(row)
+        met = [*pairwise(row[max(first - 1, 0) : first + len(new) + 1])]
+        for one in new:
+            met += [(one, two) for two in old[slice(*_meeting(old, one.left, one.right))]]
+        for one, two in met:
+            if one.free != two.free:
+                touching.add((one.node, two.node) if one.free else (two.node, one.node))
+            elif not one.free or max(one.left, two.left) < min(one.right, two.right):
+                sets.join(one.node, two.node)
+    component_of = tuple(map(sets.top, range(len(sets.parent))))
+    free_areas: dict[int, int] = defaultdict(int)
+    cluster_areas: dict[int, int] = defaultdict(int)
+    # below its upper end, less below its lower one
+    for items, height in (*ends, (row, cover.steps)):
+        for item in items:
+            areas = free_areas if item.free else cluster_areas
+            areas[component_of[item.node]] += (item.right - item.left) * height
+    return CoverSweep(
+        cover.steps,
+        tuple(lines),
+        tuple(rows),
+        component_of,
+        dict(free_areas),
+        dict(cluster_areas),
+        frozenset((component_of[a], component_of[b]) for a, b in touching),
+    )
 
 
-class _Strips:
-    """The strips so far, and their gaps and blocks as disjoint sets that grow together, with what is
-    known of their areas.
-    """
+class _Sets:
+    """Disjoint sets of numbers that grow together."""
 
-    def __init__(self, steps: int) -> None:
-        self._steps = steps
-        self._parent: list[int] = []
-        self._free: list[bool] = []
-        self._areas: list[int] = []
-        self._pairs: set[tuple[int, int]] = set()
-        self._rows: list[tuple[Item, ...]] = []
-        self._row: list[Item] = []
+    def __init__(self) -> None:
+        self.parent: list[int] = []
 
-    def add(self, low: int, changed: Sequence[Entry], active: list[Entry]) -> None:
-        """The strip above a line.
+    def added(self) -> int:
+        self.parent.append(len(self.parent))
+        return len(self.parent) - 1
 
-        Parameters
-        ----------
-        changed : what ends or begins at the line.
-        active : all that is in the strip, sorted.
-        """
-        row = self._row
-        # from the right, so that the numbers of what is left of a zone stay
-        for first, last in reversed(_zones(changed, row)) if row else [(0, 0)]:
-            old = row[first:last]
-            left, right = (old[0].left, old[-1].right) if old else (0, self._steps)
-            inner = active[bisect_left(active, (left,)) : bisect_left(active, (right,))]
-            new = [
-                Item(a, b, free, self._added(free, -(b - a) * low))
-                for a, b, free in _gaps_and_blocks(inner, left, right)
-            ]
-            self._grow(old, low)
-            for one, two in pairwise(
-                [*row[max(first - 1, 0) : first], *new, *row[last : last + 1]]
-            ):
-                self._meet(one, two, along=True)
-            for one, two in _touching(old, new):
-                self._meet(one, two, along=max(one.left, two.left) < min(one.right, two.right))
-            row[first:last] = new
-        self._rows.append(tuple(row))
-
-    def _added(self, free: bool, area: int) -> int:
-        self._parent.append(len(self._parent))
-        self._free.append(free)
-        self._areas.append(area)
-        return len(self._parent) - 1
-
-    def _top(self, n: int) -> int:
-        parent = self._parent
+    def top(self, n: int) -> int:
+        parent = self.parent
         while parent[n] != n:
             parent[n] = parent[parent[n]]
             n = parent[n]
         return n
 
-    def _meet(self, one: Item, two: Item, *, along: bool) -> None:
-        """Two items touch: along an edge, or in a corner."""
-        if one.free != two.free:
-            self._pairs.add((one.node, two.node) if one.free else (two.node, one.node))
-        elif along or not one.free:
-            tops = self._top(one.node), self._top(two.node)
-            self._parent[max(tops)] = min(tops)
-
-    def _grow(self, items: Sequence[Item], height: int) -> None:
-        """Items end at a line: their areas are those below it, less what is below their beginning."""
-        for item in items:
-            self._areas[item.node] += (item.right - item.left) * height
-
-    def result(self, lines: tuple[int, ...]) -> CoverSweep:
-        """All of it, once the last strip is there."""
-        self._grow(self._row, self._steps)
-        component_of = tuple(map(self._top, self._parent))
-        areas: dict[int, int] = defaultdict(int)
-        cluster_areas: dict[int, int] = defaultdict(int)
-        for top, is_free, area in zip(component_of, self._free, self._areas, strict=True):
-            (areas if is_free else cluster_areas)[top] += area
-        return CoverSweep(
-            self._steps,
-            lines,
-            tuple(self._rows),
-            component_of,
-            dict(areas),
-            dict(cluster_areas),
-            frozenset((component_of[a], component_of[b]) for a, b in self._pairs),
-        )
+    def join(self, one: int, two: int) -> None:
+        tops = self.top(one), self.top(two)
+        self.parent[max(tops)] = min(tops)
 
 
-def _zones(changed: Sequence[Entry], row: Sequence[Item]) -> list[tuple[int, int]]:
-    """The items of a strip that changes meet, as disjoint parts: from which one to before which
-    one, from the left.
-    """
-    found: list[tuple[int, int]] = []
-    met = (
-        (bisect_left(row, left, key=_right), bisect_right(row, right, key=_left))
-        for left, right in changed
-    )
-    for zone in sorted(met):
-        before = found.pop() if found and zone[0] <= found[-1][1] else zone
-        found.append((before[0], max(before[1], zone[1])))
-    return found
+def _meeting(row: Sequence[Item], left: int, right: int) -> tuple[int, int]:
+    """The items of a strip that meet a closed interval: from which one to before which one."""
+    return bisect_left(row, left, key=_right), bisect_right(row, right, key=_left)
 
 
-def _gaps_and_blocks(
-    active: Sequence[Entry], start: int, end: int
-) -> Iterator[tuple[int, int, bool]]:
-    """A part of a strip from the left: ends, and whether it is free."""
-    at = start
-    block: Entry | None = None
+def _gaps_and_blocks(active: Sequence[Entry], start: int, end: int) -> Iterator[Span]:
+    """A part of a strip from the left."""
+    blocks: list[list[int]] = []
     for left, right in active:
-        if block is not None and left <= block[1]:
-            block = block[0], max(block[1], right)
-            continue
-        if block is not None:
-            yield *block, False
-            at = block[1]
+        if blocks and left <= blocks[-1][1]:
+            blocks[-1][1] = max(blocks[-1][1], right)
+        else:
+            blocks.append([left, right])
+    at = start
+    for left, right in blocks:
         if left > at:
             yield at, left, True
-        block = left, right
-    if block is not None:
-        yield *block, False
-        at = block[1]
+        yield left, right, False
+        at = right
     if at < end:
         yield at, end, True
-
-
-def _touching(below: Sequence[Item], above: Sequence[Item]) -> Iterator[tuple[Item, Item]]:
-    """Pairs of items of neighbouring strips whose closed intervals meet."""
-    j = 0
-    for one in below:
-        while j < len(above) and above[j].right < one.left:
-            j += 1
-        k = j
-        while k < len(above) and above[k].left <= one.right:
-            yield one, above[k]
-            k += 1

@@ -34,28 +34,7 @@ from ptmcad.verification.normalform.boxes import (
 )
 from ptmcad.verification.principalminors import inertia
 
-_SHRINKINGS = (
-    1,
-    0,
-    -1,
-    -2,
-    -3,
-    -4,
-    -5,
-    -6,
-    -8,
-    -10,
-    -12,
-    -15,
-    -18,
-    -22,
-    -26,
-    -30,
-    -34,
-    -38,
-    -42,
-    -46,
-)
+_SHRINKINGS = (*range(1, -7, -1), *range(-8, -13, -2), -15, *range(-18, -47, -4))
 """Powers of two times the shape of the box in which a solution is proved to be alone."""
 _MAX_TURN = 3.0
 """Half the width of the widest box of an angle in which a solution is proved to be alone."""
@@ -111,7 +90,7 @@ def _steps(values: Sequence[arb], inverse: arb_mat) -> list[arb]:
 def _inverse_at(field: BallEquations, center: Sequence[float]) -> tuple[BallJet, arb_mat] | None:
     """The equations at a point, and the inverse of their Jacobian; None where it is not known."""
     jet = field([arb(x) for x in center])
-    inverse = None if jet.short else inverse_of(jet.jacobian)
+    inverse = inverse_of(jet.jacobian)
     return None if inverse is None else (jet, inverse)
 
 
@@ -158,7 +137,7 @@ def proved(field: BallEquations, center: Floats, shapes: Iterable[Floats]) -> Ze
             continue
         radii = _narrowed(field, center, values, sizes, least)
         near = field(list(map(arb, center, radii)))
-        signs = "" if not field.form.is_gradient else None if near.short else inertia(near.jacobian)
+        signs = inertia(near.jacobian) if field.form.is_gradient else ""
         return None if signs is None else Zero(center, radii, sizes, signs)
     return None
 
@@ -215,7 +194,7 @@ def _reaches(
     singular one.
     """
     jet = field(list(map(arb, center, radii)))
-    found = None if jet.short else image(values, jet.jacobian, list(map(arb, radii)))
+    found = image(values, jet.jacobian, list(map(arb, radii)))
     return None if found is None else [step.abs_upper() for step in found]
 
 

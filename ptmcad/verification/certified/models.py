@@ -128,15 +128,16 @@ class ModelCounting:
     ) -> list[Zero]:
         """The solutions that count, with springs on one line each on all sides of length zero."""
         found, near = list[Zero](), () if there is None else there.found
+        is_of_stable = kind_of(self._count).is_of_stable
+        asked = ("inequalities", "stability") if is_of_stable else ("inequalities",)
         budget = BUDGETS[self.form.size - 1] // (1 if there is None else BOX_BUDGET_SHARE)
         for side, start in zip(sides(self.form), starts, strict=True):
-            field = _field(self.form, values, self._count, side)
+            field = BallEquations(self.form, values, asked, side)
             known = [zero for zero in near if _may_be_on_side(field, zero.within)]
             on_side = zeros(field, start, start.whole, budget, smallest, known)
             counted = _counted(field, on_side, self._count)
             if self._count is Count.TOTAL and self.form.conditions_for_stability:
-                with_stability = _field(self.form, values, Count.STABLE, side)
-                counted = _with_signs(with_stability, self.form, counted)
+                counted = [replace(zero, signs=_stability(field, zero)) for zero in counted]
             # at both ends of a box of angles one may be there on two sides
             found += [
                 zero for zero in counted if not any(self.same(zero, other) for other in found)
@@ -190,9 +191,9 @@ class ModelCounting:
         """
         values = _balls(self._values(x, y))
         for side in sides(self.form) if self.form.conditions_for_stability else ():
-            field = _field(self.form, values, Count.STABLE, side)
+            field = BallEquations(self.form, values, sides=side)
             if _may_be_on_side(field, zero.within):
-                return _with_signs(field, self.form, [zero])[0].signs
+                return _stability(field, zero)
         return ""
 
     def has_margins(self, x: Fraction, y: Fraction, zero: Zero) -> bool:
@@ -206,8 +207,8 @@ class ModelCounting:
         return self._has_margins(_balls(self._values(x, y)), zero)
 
     def _has_margins(self, values: Values, zero: Zero) -> bool:
-        field = BallEquations(self.form, values, ("margins",))
-        return _are_positive(field(zero.within).conditions, kind_of(self._count).undecided)
+        margins = BallEquations(self.form, values)(zero.within).of("margins")
+        return _are_positive(margins, kind_of(self._count).undecided)
 
     def _values(self, x: Fraction, y: Fraction) -> dict[str, Fraction]:
         """Every parameter at a point.
@@ -245,23 +246,7 @@ class ModelCounting:
 
 def _may_be_on_side(field: BallEquations, box: Sequence[arb]) -> bool:
     """Whether some of a box may be on the field's side of the lengths zero."""
-    return not any(c < 0 for c in _ahead(field, box))
-
-
-def _ahead(field: BallEquations, box: Sequence[arb]) -> Sequence[arb]:
-    """What is positive on the field's side of the lengths zero."""
-    return field(box).conditions[: len(field.sides)]
-
-
-def _field(form: Form, values: Values, count: Count | None, side: Sides) -> BallEquations:
-    """The equations with what is positive at the solutions that are counted, and at no others, if a
-    count is given.
-    """
-    if count is None:
-        return BallEquations(form, values, sides=side)
-    stable = kind_of(count).is_of_stable
-    asked = ("inequalities", "stability") if stable else ("inequalities",)
-    return BallEquations(form, values, asked, stable and bool(form.closing), side)
+    return not any(c < 0 for c in field(box).of("ahead"))
 
 
 def _counted(field: BallEquations, found: Sequence[Zero], count: Count) -> list[Zero]:
@@ -289,27 +274,18 @@ def _apart(field: BallEquations, zero: Zero) -> Zero:
     """
     for k in range(_HALVINGS if field.sides else 0):
         alone = tuple(max(r, a / 2**k) for r, a in zip(zero.radii, zero.alone, strict=True))
-        if all(
-            c > 0 for c in field(tuple(map(arb, zero.center, alone))).conditions[: len(field.sides)]
-        ):
+        if all(c > 0 for c in field(tuple(map(arb, zero.center, alone))).of("ahead")):
             return replace(zero, alone=alone)
     if field.sides:
         raise Unproved("a solution may be where a spring on one line has no length")
     return zero
 
 
-def _with_signs(field: BallEquations, form: Form, found: Sequence[Zero]) -> list[Zero]:
-    """The solutions with the signs of the conditions for stability; empty where one is not certain."""
-    kept = []
-    for zero in found:
-        conditions = field(zero.within).conditions[len(field.sides) + len(form.inequalities) :]
-        certain = all(c > 0 or c < 0 for c in conditions)
-        kept.append(
-            replace(
-                zero, signs="".join("+" if c > 0 else "-" for c in conditions) if certain else ""
-            )
-        )
-    return kept
+def _stability(field: BallEquations, zero: Zero) -> str:
+    """The signs of the conditions for stability at a solution; empty where one is not certain."""
+    conditions = field(zero.within).of("stability")
+    certain = all(c > 0 or c < 0 for c in conditions)
+    return "".join("+" if c > 0 else "-" for c in conditions) if certain else ""
 
 
 def _balls(values: Mapping[str, Fraction]) -> dict[str, arb]:
@@ -368,16 +344,16 @@ def _zero_in(
     """
     for bits in precisions(solution):
         with ctx.workprec(bits):
-            field = _field(form, _balls(values), None, side)
+            field = BallEquations(form, _balls(values), sides=side)
             reach = arb(0, ball_of(solution.radius))
             if not _may_be_on_side(field, [ball_of(x) + reach for x in solution.center]):
                 return None
 
             def function(
                 box: Sequence[arb], field: BallEquations = field
-            ) -> tuple[Sequence[arb], Matrix] | None:
+            ) -> tuple[Sequence[arb], Matrix]:
                 jet = field(box)
-                return None if jet.short else (jet.values, jet.jacobian)
+                return jet.values, jet.jacobian
 
             found = tested(function, solution)
             if found is None:
@@ -385,7 +361,7 @@ def _zero_in(
             if not found.holds or not _may_be_on_side(field, found.within):
                 return None
             signs = inertia(found.jacobian) if form.is_gradient else ""
-            if signs is not None and all(c > 0 for c in _ahead(field, found.within)):
+            if signs is not None and all(c > 0 for c in field(found.within).of("ahead")):
                 center, radii = found.in_floats()
                 return _apart(field, Zero(center, radii, _room(solution, center), signs))
     raise Unproved("not decided")

@@ -34,8 +34,8 @@ _NARROWINGS = 8
 _MAX_BITS = 2**16
 """Beyond, a box stays open: its number of digits is the maker's choice."""
 
-Function = Callable[[Sequence[arb]], tuple[Sequence[arb], Matrix] | None]
-"""The equations and their derivatives over a box; None where they have none."""
+Function = Callable[[Sequence[arb]], tuple[Sequence[arb], Matrix]]
+"""The equations and their derivatives over a box; not finite where they have none."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -123,6 +123,7 @@ def _image(
     """Krawczyk's image of a box, less its middle, and the derivatives over the box; None where they
     are singular.
     """
-    at, over = function(middle), function([arb(m, r) for m, r in zip(middle, reach, strict=True)])
-    found = None if at is None or over is None else image(at[0], over[1], reach)
-    return None if found is None or over is None else (found, over[1])
+    values, _ = function(middle)
+    _, jacobian = function([arb(m, r) for m, r in zip(middle, reach, strict=True)])
+    found = image(values, jacobian, reach)
+    return None if found is None else (found, jacobian)

@@ -49,16 +49,6 @@ class _Complex(NamedTuple):
     def plus(self, other: _Complex) -> _Complex:
         return _Complex(self.real + other.real, self.imag + other.imag)
 
-    def times(self, other: _Complex) -> _Complex:
-        return _Complex(
-            self.real * other.real - self.imag * other.imag,
-            self.real * other.imag + self.imag * other.real,
-        )
-
-    @property
-    def conjugate(self) -> _Complex:
-        return _Complex(self.real, -self.imag)
-
     def vanishes(self, vanishes: Vanishes) -> bool:
         return vanishes(self.real) and vanishes(self.imag)
 
@@ -85,14 +75,15 @@ def line_of(vector: tuple[Coordinate, Coordinate], vanishes: Vanishes) -> Spring
     if e.vanishes(vanishes):
         e = _Complex(-part.imag, part.real)
     for part, other in paired:
-        one, two = other.times(e.conjugate), part.conjugate.times(e)
-        if not (vanishes(one.real - two.real) and vanishes(one.imag - two.imag)):
+        along = (other.real - part.real) * e.real + (other.imag - part.imag) * e.imag
+        across = (other.imag + part.imag) * e.real - (other.real + part.real) * e.imag
+        if not (vanishes(along) and vanishes(across)):
             return None
     return SpringLine(_simplest(*(0 * f if vanishes(f) else f for f in e)), twice)
 
 
 def _exponentials(vector: tuple[Coordinate, Coordinate]) -> dict[tuple[Multi, Multi], _Complex]:
-    """Twice the coefficients of e^(i m.q) h^r in d_x + i d_y, by m and r; none is zero."""
+    """Twice the coefficients of e^(i m.q) h^r in d_x + i d_y, by m and r."""
     found: dict[tuple[Multi, Multi], _Complex] = {}
     for k, coordinate in enumerate(vector):
         for (turned, raised, sine), c in coordinate.items():
@@ -102,11 +93,7 @@ def _exponentials(vector: tuple[Coordinate, Coordinate]) -> dict[tuple[Multi, Mu
                 part = _turned(c, turn)
                 key = tuple(sign * m for m in turned), raised
                 found[key] = found[key].plus(part) if key in found else part
-    return {
-        key: part
-        for key, part in found.items()
-        if not (part.real.is_zero() and part.imag.is_zero())
-    }
+    return found
 
 
 def _turned(c: fmpq_mpoly, quarters: int) -> _Complex:

@@ -10,23 +10,32 @@ coefficients have one sign, and the constant one is not zero, there is no soluti
 signs of unknowns are tried. Coefficients are balls over all angles and all other real unknowns as
 far as they are bounded; the part of a spring with a free length is at most its pull times the
 slope, of either sign. Where unknowns bound one another, x_j = t_j g^w_j with |t_j| at most 1, and
-the same is tried for g; where springs hold several, `ptmcad.verification.normalform.held` is. The
-second engine evaluates by Horner's rule on unbounded intervals.
+the same is tried for g. The second engine evaluates by Horner's rule on unbounded intervals.
+
+Lengths that springs hold together are bounded by diagonal dominance. Let equations be A s + b = sum
+of K_c (u_c . w_ci), with unit vectors u_c. For any matrix V let M = V A and Q be upper bounds of
+|I - M|, g positive upper bounds of |V b| + sum of K_c |sum_j V_ij w_cj|. As s = V (A s) +
+(I - M) s,
+
+    |s| <= g + Q |s|,  so that with  t = max |s_i|/g_i  and  q = max (Q g)_i/g_i  is  t <= 1 + q t,
+
+and |s_i| <= g_i/(1 - q) if q < 1: M, with columns times g_j, has a dominant diagonal then
+(Gershgorin). V is about the inverse of A's middle, as balls without a radius have it; that it is
+any matrix is enough. The second engine solves by Cramer's rule, exactly.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import combinations, product
 from math import comb, inf, nextafter
 from typing import NamedTuple
 
-from flint import arb
+from flint import arb, arb_mat
 
 from ptmcad.verification.coordinates import ball, power
 from ptmcad.verification.normalform.boxes import Unproved, size
-from ptmcad.verification.normalform.held import bounds_of
 from ptmcad.verification.normalform.waves import Form, Key, Waves
 
 HALF_TURN = 101 / 32
@@ -37,12 +46,16 @@ FINE_POWERS = (4, 10, 20, 40)
 """... and those that are tried with angles in parts, where none will do for all angles at once."""
 MAX_PARTS = 400
 MAX_WEIGHT = 3
+MAX_SHARE = 0.5
+"""Of q: a wider box of what A depends on is halved, as bounds grow like 1/(1 - q)."""
+_MIN_SIZE = 2.0**-60
 
+_Balls = Sequence[arb]
 Row = Mapping[Key, arb]
 """A polynomial by its waves."""
 Monomials = dict[tuple[int, ...], arb]
 """By the powers of what is not bounded."""
-_Linear = tuple[list[list[arb]], list[arb], list[tuple[arb, list[arb], list[arb]]]]
+_Linear = tuple[Sequence[_Balls], _Balls, Sequence[tuple[arb, _Balls, _Balls]]]
 """Equations A s + b less the parts of springs, as `bounds_of` has them."""
 _ZERO, _ANY = arb(0), arb(0, 1)
 
@@ -109,13 +122,11 @@ class _RangeChart:
             return None
         widest = max(shares, key=lambda j: shares[j])
         x = self.factors[widest]
-        one, two = x.lower().union(x.mid()), arb(x.mid()).union(x.upper())
-        return self._with(widest, one), self._with(widest, two)
-
-    def _with(self, k: int, x: arb) -> _RangeChart:
-        return _RangeChart(
-            (*self.factors[:k], x, *self.factors[k + 1 :]), self.variables, self.weights, self.lead
+        one, two = (
+            replace(self, factors=(*self.factors[:widest], half, *self.factors[widest + 1 :]))
+            for half in (x.lower().union(x.mid()), arb(x.mid()).union(x.upper()))
         )
+        return one, two
 
 
 class _Equation(NamedTuple):
@@ -174,22 +185,20 @@ class _Bounds:
     def _signs(self, k: int) -> tuple[int, ...]:
         return (1,) if k in self.positive else (1, -1)
 
-    def alone(self, k: int) -> float | None:
-        """A bound of one unknown, whatever those without one are."""
-        return self._bound(list(self._faces({k: 1})), POWERS)
-
-    def together(self, chosen: Sequence[int]) -> dict[int, float] | None:
-        """Bounds of some unknowns that bound one another."""
-        if not self.has_polynomials:
-            return None
-        for weights in sorted(
-            product(range(1, MAX_WEIGHT + 1), repeat=len(chosen)), key=lambda w: (max(w), sum(w))
-        ):
-            of = dict(zip(chosen, weights, strict=True))
-            bound = self._bound(list(self._faces(of)), ())
-            if bound is not None:
-                return {k: bound**w for k, w in of.items()}
-        return None
+    def ways(self, waiting: Sequence[int]) -> Iterator[dict[int, float] | None]:
+        """Bounds of one unknown, whatever others without one are; of some that bound one another;
+        of some that springs hold; None where there are none.
+        """
+        for k in waiting:
+            yield self._bounded({k: 1}, POWERS)
+        several = [c for n in range(2, len(waiting) + 1) for c in combinations(waiting, n)]
+        for chosen in several if self.has_polynomials else ():
+            for weights in sorted(
+                product(range(1, MAX_WEIGHT + 1), repeat=len(chosen)),
+                key=lambda w: (max(w), sum(w)),
+            ):
+                yield self._bounded(dict(zip(chosen, weights, strict=True)), ())
+        yield from map(self.held, several)
 
     def held(self, chosen: Sequence[int]) -> dict[int, float] | None:
         """Bounds of some unknowns in which their equations are linear, but for the directions of
@@ -260,8 +269,13 @@ class _Bounds:
                     lead,
                 )
 
-    def _bound(self, charts: Sequence[_RangeChart], powers: Sequence[int]) -> float | None:
-        """The least power of two that is a bound in all charts."""
+    def _bounded(
+        self, weights: Mapping[int, int], powers: Sequence[int]
+    ) -> dict[int, float] | None:
+        """The unknowns' bounds that follow from the least power of two that bounds the number whose
+        powers they are.
+        """
+        charts = list(self._faces(weights))
 
         def holds(exponent: int, parts: int) -> bool:
             return all(self._is_empty(chart, arb(2) ** exponent, parts) for chart in charts)
@@ -269,9 +283,8 @@ class _Bounds:
         for parts, exponents in ((1, powers), (MAX_PARTS, FINE_POWERS)):
             # what does not hold far away holds nowhere
             if exponents and holds(exponents[-1], parts):
-                return float(
-                    2.0 ** next(e for e in exponents if e == exponents[-1] or holds(e, parts))
-                )
+                least = next(e for e in exponents if e == exponents[-1] or holds(e, parts))
+                return {k: 2.0 ** (least * weight) for k, weight in weights.items()}
         return None
 
     def _is_empty(self, chart: _RangeChart, bound: arb, parts: int) -> bool:
@@ -315,30 +328,53 @@ def half_widths(form: Form, values: Mapping[str, arb]) -> tuple[float, ...]:
     Unproved
         With the unknown, when no bound of it could be proved.
     """
-    if all(form.is_circle):
-        return (HALF_TURN,) * form.size
-    found = _all_bounds(_Bounds(form, values))
-    if None not in found:
-        return tuple(half for half in found if half is not None)
-    raise Unproved(f"no bound of the unknown {form.unknowns[found.index(None)]} could be proved")
-
-
-def _all_bounds(bounds: _Bounds) -> list[float | None]:
-    """The bounds as far as they are found; those that are known serve to bound the others."""
+    bounds = _Bounds(form, values)
     found = bounds.found
     while waiting := [k for k, half in enumerate(found) if half is None]:
-        for k in waiting:
-            found[k] = bounds.alone(k)
-            if found[k] is not None:
-                break
-        else:
-            several = [c for n in range(2, len(waiting) + 1) for c in combinations(waiting, n)]
-            for way, chosen in product((bounds.together, bounds.held), several):
-                both = way(chosen)
-                if both is not None:
-                    for k, half in both.items():
-                        found[k] = half
-                    break
-            else:
-                break
-    return found
+        # those that are known serve to bound the others
+        new = next(filter(None, bounds.ways(waiting)), None)
+        if new is None:
+            raise Unproved(f"no bound of the unknown {form.unknowns[waiting[0]]} could be proved")
+        for k, half in new.items():
+            found[k] = half
+    return tuple(half for half in found if half is not None)
+
+
+def bounds_of(
+    matrix: Sequence[_Balls], rest: _Balls, springs: Sequence[tuple[arb, _Balls, _Balls]]
+) -> list[arb] | None:
+    """Of each length, exact numbers; None where no dominant diagonal is found.
+
+    Parameters
+    ----------
+    matrix, rest : A, row by row, and b.
+    springs : for each K, and the coordinates of the vector w_ci for each equation.
+    """
+    n = range(len(rest))
+    try:
+        inverse = arb_mat([[arb(a.mid()) for a in row] for row in matrix]).inv()
+    except ZeroDivisionError:
+        return None
+    guess = [[arb(inverse[i, j].mid()) for j in n] for i in n]
+    columns = list(zip(*matrix, strict=True))
+    reach = [_reach(row, rest, springs) for row in guess]
+    off = [[(int(i == j) - _dot(guess[i], columns[j])).abs_upper() for j in n] for i in n]
+    shares = [_dot(off[i], reach).abs_upper() / reach[i] for i in n]
+    if not all(share < MAX_SHARE for share in shares):
+        return None
+    most = max(share.abs_upper() for share in shares)
+    return [(r / (1 - most)).abs_upper() for r in reach]
+
+
+def _reach(factors: _Balls, rest: _Balls, springs: Sequence[tuple[arb, _Balls, _Balls]]) -> arb:
+    """A positive upper bound of the rest and the springs' parts, where the equations are summed up
+    with factors.
+    """
+    total = abs(_dot(factors, rest)) + _MIN_SIZE
+    for pull, across, up in springs:
+        total = total + pull * size(_dot(factors, across), _dot(factors, up))
+    return total.abs_upper()
+
+
+def _dot(a: _Balls, b: _Balls) -> arb:
+    return sum((x * y for x, y in zip(a, b, strict=True)), arb(0))
