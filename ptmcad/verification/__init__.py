@@ -24,7 +24,7 @@ An order of reading, for what an exact map claims:
    signatures. `solutions`: the stored counts and boxes. `norms`: the stored curves are all of those
    where counts change.
 5. `planecurves`, `rootcounts`, `projections`, `adjacencies`, `merging`: the decomposition of the
-   plane. `windowsigns`, once more: the curves that were left out.
+   plane. `planclaims` and, once more, `windowsigns`: what was left out.
 6. `disks`, `wallintegrals`, `areaclaims`: enclosures of the areas, by power series alone.
 7. `poseclaims`: points. `parameterlines`, `intervalclaims`, `rangeclaims`: lines.
    `designclaims`, `arrangements`: designs and families.

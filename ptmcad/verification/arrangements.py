@@ -39,7 +39,7 @@ from ptmcad.text.flint_numbers import simplest_fraction
 from ptmcad.text.numerals import text_of
 from ptmcad.text.plane import PlanePolynomial
 from ptmcad.verification.planecurves import factors, polynomial
-from ptmcad.verification.report import Check, Unchecked, Violation, drawn
+from ptmcad.verification.report import Check, Unchecked, Violation, drawn, share
 from ptmcad.verification.rootcounts import is_alone
 
 NEAR = Fraction(1, 10**6)
@@ -120,9 +120,9 @@ def _checked(found: Changes, fits: Fits, source: random.Random) -> str:
     skipped = 0
     for part, (start, end) in enumerate(parts):
         for _ in range(RANDOM):
-            share = source.randrange(1, _DIGITS)
+            chosen = source.randrange(1, _DIGITS)
             low, high = (
-                start + (end - start) * Fraction(2 * share + k, 2 * _DIGITS) for k in (0, 1)
+                start + (end - start) * Fraction(2 * chosen + k, 2 * _DIGITS) for k in (0, 1)
             )
             member = low if low == high else simplest_fraction(low, high)
             try:
@@ -255,9 +255,7 @@ def verify_surfaces(
     chosen = drawn(seed)
     source = random.Random(chosen)
     for _ in range(_DRAWN):
-        value = found.free.low + (found.free.high - found.free.low) * Fraction(
-            source.randrange(1, _SHARES), _SHARES
-        )
+        value = found.free.low + (found.free.high - found.free.low) * share(source, _SHARES)
         try:
             alone = map_at(value)
         except HypothesisError:  # a value at which nothing is said of the family

@@ -8,7 +8,7 @@ from functools import partial
 from ptmcad.answer.design import BestDesign
 from ptmcad.answer.poses import Poses
 from ptmcad.answer.regionmap import RegionMap, Status
-from ptmcad.errors import A_MAP, ConfigError, expect
+from ptmcad.errors import A_MAP, expect
 from ptmcad.options import Progress
 from ptmcad.verification.adjacencies import (
     check_adjacencies,
@@ -23,10 +23,12 @@ from ptmcad.verification.equationtexts import check_system
 from ptmcad.verification.merging import check_merges, check_regions, check_shape
 from ptmcad.verification.norms import check_conditions, check_irreducible, check_norm
 from ptmcad.verification.parameterclaims import check_boundary, check_text
+from ptmcad.verification.planclaims import check_plan, refuse_ablation
 from ptmcad.verification.poseclaims import verify_poses
 from ptmcad.verification.projections import check_critical_values, check_stacks
 from ptmcad.verification.report import (
-    NO_CLAIMS,
+    PROVENANCE,
+    Check,
     CheckProgress,
     VerifyReport,
     checked,
@@ -34,6 +36,8 @@ from ptmcad.verification.report import (
 )
 from ptmcad.verification.solutions import check_counts, check_solutions
 from ptmcad.verification.windowsigns import check_left_out
+
+PLAN = "predicted costs; symmetries and other savings that leave no trace in this file"
 
 CheckOf = tuple[str, str, Callable[[Claims], str]]
 """The name of a check, its method, and the function that raises `Violation` or says what it
@@ -105,24 +109,8 @@ def verify(
     if result.status is Status.PARTIAL:
         missing = set() if result.stacks else {name for name, _, _ in _SINCE_VARIETY}
     checks = checked(Claims(result), steps, missing, CheckProgress(progress))
-    return VerifyReport((*checks, *NO_CLAIMS))
-
-
-def refuse_ablation(result: RegionMap) -> None:
-    """Refuse a map that was made without some saving: it serves to measure what the saving is
-    worth.
-
-    Raises
-    ------
-    ConfigError
-        That names the savings.
-    """
-    off = sorted({step.saving for step in result.plan if step.saving and step.done})
-    if off:
-        raise ConfigError(
-            f"{result.slice.name} was computed without the saving{'s' * (len(off) > 1)} {', '.join(off)}, to measure "
-            "what it is worth, and such results are not checked: classify it anew"
-        )
+    checks += [Check("plan without trace", "", None, PLAN), PROVENANCE]
+    return VerifyReport(tuple(checks))
 
 
 def checks_of(number: int | None) -> tuple[CheckOf, ...]:
@@ -144,5 +132,6 @@ def checks_of(number: int | None) -> tuple[CheckOf, ...]:
         ("conditions", "norms at random points", partial(check_conditions, seed=seed)),
         ("boundary components", "factors of the parameters", partial(check_boundary, seed=seed)),
         ("left out", "root counts, resultants", check_left_out),
+        ("plan", "built once more", check_plan),
         *_SINCE_VARIETY,
     )

@@ -183,18 +183,13 @@ def polynomial(value: CriticalValue) -> fmpz_poly:
 
 
 def side(u: fmpq, value: CriticalValue) -> int:
-    """The sign of u minus the critical value, by a change of sign, or a count of roots where there
-    is none.
-    """
+    """The sign of u minus the critical value."""
     low, high = interval_of(value)
     if u < low or u > high:
         return -1 if u < low else 1
     p = polynomial(value)
     if p(u) == 0:
         return 0
-    at_low, at_high = p(low), p(high)
-    if (at_low > 0) != (at_high > 0) and at_low != 0 and at_high != 0:
-        return 1 if (p(u) > 0) == (at_high > 0) else -1
     return 1 if roots_within(p, low, u) > 0 else -1
 
 
@@ -205,11 +200,7 @@ def short(value: fmpq) -> str:
 
 def is_root(f: fmpz_poly, value: CriticalValue) -> bool:
     """Whether a critical value is a root of f."""
-    whole = polynomial(value)
-    common = f.gcd(whole)
-    if common.degree() == whole.degree():
-        return True
-    return common.degree() > 0 and roots_within(common, *interval_of(value)) > 0
+    return roots_within(f.gcd(polynomial(value)), *interval_of(value)) > 0
 
 
 def bracket(value: CriticalValue, width: fmpq) -> Interval:

@@ -40,6 +40,7 @@ from ptmcad.verification.report import (
     Within,
     checked,
     drawn,
+    share,
 )
 from ptmcad.verification.windowsigns import Sign, is_in_domain
 
@@ -47,7 +48,6 @@ DESIGNS = 12
 """Random designs of which a line is looked at at least; one of each box."""
 _HALVINGS = 16
 """Of a part of the bounds that no box holds, until a condition is seen to fail all over it."""
-_SHARES = 2**20
 Ranges = tuple[tuple[Fraction, Fraction], ...]
 _NOTHING = Enclosure(Fraction(0), Fraction(0))
 
@@ -331,7 +331,7 @@ def _check_bound(lines: _DesignLines) -> str:
     for box in boxes:
         if box.bound > found.bound:
             raise Violation(f"{_text(box)} has a larger bound than all of them")
-        design = lines.named([low + (high - low) * _share(source) for low, high in box.ranges])
+        design = lines.named([low + (high - low) * share(source) for low, high in box.ranges])
         try:
             ranges = lines.ranges(design)
         except NotKnown:
@@ -377,10 +377,6 @@ def _check_extremes(lines: _DesignLines) -> str:
         lines.seed,
     )
     return check_maxima(both, found.maxima)
-
-
-def _share(source: random.Random) -> Fraction:
-    return Fraction(2 * source.randrange(_SHARES) + 1, 2 * _SHARES)
 
 
 def _enclosed(end: AnyEnd) -> Enclosure:

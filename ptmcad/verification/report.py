@@ -7,6 +7,7 @@ listed as such.
 from __future__ import annotations
 
 import os
+import random
 from collections.abc import Callable, Collection, Iterator, Sequence
 from contextvars import ContextVar
 from dataclasses import dataclass
@@ -33,6 +34,11 @@ WIDTH = 22
 def drawn(seed: int | None) -> str:
     """The seed of all random choices; a fresh one where none is given, to which no claims can be fitted."""
     return str(int.from_bytes(os.urandom(8)) if seed is None else seed)
+
+
+def share(source: random.Random, parts: int = 2**20) -> Fraction:
+    """The middle of one of so many equal parts of the numbers from 0 to 1."""
+    return Fraction(2 * source.randrange(parts) + 1, 2 * parts)
 
 
 class Violation(Exception):
@@ -252,21 +258,13 @@ def _is_decimal_of(text: str | None, ends: tuple[Fraction, Fraction]) -> bool:
     return all(abs(fraction_of(text) - end) <= unit for end in ends)
 
 
-NO_CLAIMS = (
-    Check(
-        "plan",
-        "",
-        None,
-        "what it says of curves, unknowns and savings is no claim about the regions",
-    ),
-    Check(
-        "provenance",
-        "",
-        None,
-        "name, title, reference, versions, precision, timings: no claims about the regions",
-    ),
+PROVENANCE = Check(
+    "provenance",
+    "",
+    None,
+    "name, title, reference, versions, precision, timings: no claims about the regions",
 )
-"""The entries of a map that no check is of."""
+"""What no check is of."""
 PARTS = 100
 """Of each check, for a bar that shows how far a verification is."""
 

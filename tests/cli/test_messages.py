@@ -138,7 +138,7 @@ def test_verify_shows_progress_on_a_terminal(
         monkeypatch.setattr(terminal, "isatty", lambda watched=watched: watched)
         monkeypatch.setattr(sys, "stderr", terminal)
         assert run(["verify", str(path)]) == 0
-        assert ("] check 19 of 19: areas ..., " in terminal.getvalue()) == watched
+        assert ("] check 20 of 20: areas ..., " in terminal.getvalue()) == watched
 
 
 @pytest.mark.parametrize("command", ["classify", "check", "variety"])

@@ -201,6 +201,7 @@ def test_areas_that_nobody_asks_for(shipped: Shipped) -> None:
     assert result.status is whole.status
     assert difference(whole, result) == ""
     assert ptmcad.verify(result).ok
+    assert not ptmcad.verify(replace(whole, plan=result.plan)).ok
     with pytest.raises(ConfigError, match="leave one out"):
         ptmcad.classify(record("fig4"), areas=False, area_tolerance="1e-3")
 
@@ -208,18 +209,19 @@ def test_areas_that_nobody_asks_for(shipped: Shipped) -> None:
 def test_verify_refuses_what_was_made_without_a_saving(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], shipped: Shipped
 ) -> None:
-    """The document says so; its auxiliary curves show it where the plan says otherwise."""
+    """The document says so, and a plan that says otherwise is false."""
     assert run(["classify", str(ROOT / "configs" / "fig2.yaml"), "--without", "sign-curve", "--without", "infinity",
                 "--format", "json", "--out", str(tmp_path)]) == 0  # fmt: skip
     path = tmp_path / "fig2.json"
     plain = RegionMap.from_json(path.read_text(encoding="utf-8"))
     with pytest.raises(
-        ConfigError, match=r"computed without the savings infinity, sign-curve, .* are not checked"
+        ConfigError,
+        match=r"computed without these savings, .* infinity, sign-curve.* are not checked",
     ):
         ptmcad.verify(plain)
     capsys.readouterr()
     assert run(["verify", str(path)]) == 2
-    assert "without the savings infinity, sign-curve" in capsys.readouterr().err
+    assert "infinity, sign-curve. Such results are not checked" in capsys.readouterr().err
     honest = shipped("fig2")
     report = ptmcad.verify(replace(plain, plan=honest.plan))
     assert report.violation is not None

@@ -49,7 +49,7 @@ def test_shipped_results_are_accepted(
     )
     assert report.ok, report.violation
     assert report.violation is None
-    assert {c.name for c in report.checks if not c.passed} == {"plan", "provenance"}
+    assert {c.name for c in report.checks if not c.passed} == {"plan without trace", "provenance"}
     assert "not checked" in report.table()
 
 

@@ -11,7 +11,7 @@ from collections.abc import Sequence
 from fractions import Fraction
 
 from ptmcad.answer.regionmap import Cell
-from ptmcad.verification.certified.counted import differs, stored
+from ptmcad.verification.certified.counted import stored
 from ptmcad.verification.certified.coverclaims import CertifiedClaims
 from ptmcad.verification.kinds import kind_of, numbers_for
 from ptmcad.verification.normalform.boxes import Unproved, Zero, in_words
@@ -86,7 +86,7 @@ def check_cell(claims: CertifiedClaims, cell: Cell) -> int:
         there = claims.counting.at(*cell.sample)
     except Unproved as reason:
         return _check_beside(claims, cell, reason)
-    if differs(cell, there.counts):
+    if stored(cell) != there.counts:
         raise Violation(f"said to have {stored(cell)}; there are {there.counts}")
     kept = [
         e
@@ -128,7 +128,7 @@ def _decided(claims: CertifiedClaims, cell: Cell) -> tuple[Fraction, Fraction] |
             there = claims.counting.at(*at)
         except Unproved:
             continue
-        if differs(cell, there.counts):
+        if stored(cell) != there.counts:
             raise Violation(
                 f"said to have {stored(cell)}; at {claims.place(*at)}, in the same cell, there are {there.counts}"
             )

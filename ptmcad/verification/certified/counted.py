@@ -5,7 +5,7 @@ Guarantee: data only.
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
 from ptmcad.answer.counts import Counted, MorseIndex
@@ -30,14 +30,17 @@ def contradiction_in(cell: Cell) -> str:
     return ""
 
 
-def check_region(r: RegionMap, number: int, members: Collection[int]) -> None:
-    """A region has the counts that all of its cells have, and the sample of one of them.
+def checked_members(r: RegionMap, number: int) -> tuple[int, ...]:
+    """The cells of a region, which has the counts that all of them have, and the sample of one.
 
     Raises
     ------
     Violation
     """
     region = r.regions[number]
+    members = tuple(n for n, cell in enumerate(r.cells) if cell.region == number)
+    if not members or members != region.cells:
+        raise Violation(f"region {number} is said to have cells {region.cells}, not {members}")
     said, cells = numbers_in(region), [numbers_in(r.cells[n]) for n in members]
     for name in dict.fromkeys(name for known in (said, *cells) for name in known):
         values = {known.get(name) for known in cells}
@@ -46,6 +49,7 @@ def check_region(r: RegionMap, number: int, members: Collection[int]) -> None:
             raise Violation(f"region {number}: {name} is {expected}, not {said.get(name)}")
     if tuple(region.sample) not in {tuple(r.cells[n].sample) for n in members}:
         raise Violation(f"the sample of region {number} is not the sample of one of its cells")
+    return members
 
 
 @dataclass(frozen=True, slots=True)
@@ -64,11 +68,6 @@ class CellCounts(Counted):
 def stored(cell: Cell) -> CellCounts:
     """The counts of a cell as they are stored."""
     return CellCounts(cell.total, cell.stable, cell.index, cell.further)
-
-
-def differs(cell: Cell, true: CellCounts) -> bool:
-    """Whether the stored counts of a cell are not these."""
-    return stored(cell) != true
 
 
 @dataclass(frozen=True, slots=True)

@@ -26,10 +26,10 @@ from typing import NamedTuple
 
 from ptmcad.cover.rectangles import Rectangle
 from ptmcad.verification.certified.cellsamples import HOPELESS
-from ptmcad.verification.certified.counted import CountedPoint, differs, stored
+from ptmcad.verification.certified.counted import CountedPoint, stored
 from ptmcad.verification.certified.coverclaims import CertifiedClaims
 from ptmcad.verification.normalform.boxes import Unproved
-from ptmcad.verification.report import Unchecked, Violation, Within
+from ptmcad.verification.report import Unchecked, Violation, Within, share
 
 FIRST_BOX_PARTS = 512
 """The first box tried has at most this part of the window's width on each side of its middle."""
@@ -128,7 +128,7 @@ def _by_area(
     width = Fraction(claims.sweep.steps, side)
     for i, j in product(range(side), repeat=2):
         for _ in range(_MAX_TRIALS):
-            u, v = (i + _uniform(rng)) * width, (j + _uniform(rng)) * width
+            u, v = (i + share(rng)) * width, (j + share(rng)) * width
             box = _free(claims, u, v)
             if box is not None:
                 found.append(box)
@@ -156,7 +156,7 @@ def _beside(claims: CertifiedClaims, rng: random.Random, number: int) -> list[_S
             if len(found) == number:
                 break
             for _ in range(_FIRST_TRIALS):
-                chosen = edges[k][bisect_right(totals[k], totals[k][-1] * _uniform(rng))]
+                chosen = edges[k][bisect_right(totals[k], totals[k][-1] * share(rng))]
                 u, v = _off(chosen, claims.sweep.steps, rng)
                 box = _free(claims, u / _side(number), v / _side(number))
                 if box is not None:
@@ -198,13 +198,8 @@ def _off(edge: Edge, width: int, rng: random.Random) -> tuple[Fraction, Fraction
     """
     left, right, bottom, top = edge
     away = width * Fraction(2 ** rng.uniform(-14, 0)) * rng.choice((-1, 1))
-    u, v = left + (right - left) * _uniform(rng), bottom + (top - bottom) * _uniform(rng)
+    u, v = left + (right - left) * share(rng), bottom + (top - bottom) * share(rng)
     return (u + away, v) if left == right else (u, v + away)
-
-
-def _uniform(rng: random.Random) -> Fraction:
-    """A number from 0 to 1, not one of the two."""
-    return Fraction(2 * rng.randrange(MIN_WINDOW_PARTS) + 1, 2 * MIN_WINDOW_PARTS)
 
 
 def _free(claims: CertifiedClaims, u: Fraction, v: Fraction) -> _SampleBox | None:
@@ -244,7 +239,7 @@ def check_point(
         there = claims.counting.at(x, y)
     except Unproved:
         return None
-    if differs(cell, there.counts):
+    if stored(cell) != there.counts:
         raise Violation(
             f"at {claims.place(x, y)} in cell {number}, which is said to have {stored(cell)}, there are "
             f"{there.counts}{reason}"
@@ -264,7 +259,7 @@ def _constant_over(claims: CertifiedClaims, box: _SampleBox, there: CountedPoint
         except Unproved:  # the box is too large, or the counts change in it
             half /= 4
             continue
-        assert not differs(claims.result.cells[box.cell], true), (
+        assert stored(claims.result.cells[box.cell]) == true, (
             "the box holds its middle, whose counts are the cell's"
         )
         return half

@@ -119,9 +119,7 @@ class _Systems:
             equations, rows = m.equations(m.directions()), m.hessian(m.directions())
             others = [e for k in self.turning for e in (*m.balances(k), *m.directed(k))]
             minors = [*self._minors(rows), m.list.determinant(rows)] if self.minima else []
-            yield self._system(
-                "solutions", equations, list(dict.fromkeys(others)), [*self.positive, *minors]
-            )
+            yield self._system("solutions", equations, others, [*self.positive, *minors])
 
     def _sides(self) -> Iterator[None]:
         """Springs on one line each on all sides of length zero, one choice after the other."""
@@ -143,8 +141,7 @@ class _Systems:
         equations, rows = m.equations(m.directions()), m.hessian(m.directions())
         balanced = [] if self.form.closing else [m.balanced(k) for k in springs]
         determinant = f.determinant(rows)
-        at_solutions = [e for k in springs for e in (*m.balances(k), *m.directed(k))]
-        degenerate = [d for d, _ in balanced]
+        others = [e for k in springs for e in (*m.balances(k), *m.directed(k))]
         if self.minima:
             signs += [
                 *self._minors(rows),
@@ -155,15 +152,13 @@ class _Systems:
             if charted
             else []
         )
-        others = list(dict.fromkeys(at_solutions))
-        last = list(dict.fromkeys(degenerate))
         yield self._system(
-            "folds", equations, [determinant, *others, *last], [*dict.fromkeys(signs), *long]
+            "folds", equations, [determinant, *others, *(d for d, _ in balanced)], [*signs, *long]
         )
         for k in springs if charted else ():
             yield self._short_folds(k)
             yield self._cone(k)
-        signs = list(dict.fromkeys([*signs, determinant] if self.minima else signs))
+        signs += [determinant] * self.minima
         # where margins are asked for, all minima are counted, too, so that folds ask for none
         for k, c in enumerate(self.positive):
             if k < len(self.conditions) and not any(
@@ -177,9 +172,7 @@ class _Systems:
         for k, (_, as_long) in enumerate(self.margins):
             taut = [value for j, (value, _) in enumerate(self.margins) if j != k]
             name = f"{kind_of(self.count).boundary} {k}"
-            yield self._system(
-                name, [*equations, *as_long], others, [*dict.fromkeys([*signs, *taut])]
-            )
+            yield self._system(name, [*equations, *as_long], others, [*signs, *taut])
 
     def _minors(self, rows: Sequence[Sequence[int]]) -> list[int]:
         """The principal minors but the determinant; none is negative where the Hessian is positive
@@ -293,8 +286,7 @@ class _Systems:
             ranges += [(-half, half) for half in self._halves] + [_ANGLE] * (
                 number - self.form.size
             )
-        zeros, start = (*first, *zero), np.array(ranges)
-        formulas = self.model.list
+        zeros, signs = (*first, *dict.fromkeys(zero)), (*dict.fromkeys(not_negative),)
         return CriticalSystem(
-            name + self.where, formulas, zeros, (*not_negative,), len(first), start
+            name + self.where, self.model.list, zeros, signs, len(first), np.array(ranges)
         )

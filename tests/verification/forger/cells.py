@@ -20,6 +20,7 @@ from forger.consistency import (
     renumbered_cells,
     settled,
     with_merges,
+    with_plan,
     with_regions,
 )
 from ptmcad.answer.regionmap import Adjacency, Merge, NonAdjacency, Reason, RegionMap, Solution
@@ -468,7 +469,7 @@ def _with_records(
 
 def _with_pairs_of_any_cells(r: RegionMap, adjacencies: tuple[Adjacency, ...]) -> RegionMap:
     """Settled but for the non-adjacencies, which only pairs of neighbouring stacks have."""
-    return with_regions(with_merges(replace(r, adjacencies=adjacencies)))
+    return with_plan(with_regions(with_merges(replace(r, adjacencies=adjacencies))))
 
 
 def records_of_all_gaps_without_pairs(r: RegionMap) -> Iterator[Alteration]:

@@ -1,5 +1,5 @@
-"""What follows from the claims of an exact map: merges, regions, and records of
-cells that are not adjacent.
+"""What follows from the claims of an exact map: merges, regions, records of cells that are not
+adjacent, and the plan.
 
 An altered map is *settled* when all of these follow from its cells, walls, adjacencies and
 components, be they true or not. The area of a region that the true map does not have is said to be
@@ -26,6 +26,7 @@ from ptmcad.answer.regionmap import (
     RegionMap,
     Stack,
 )
+from ptmcad.exact.exactplan import plan_of
 from ptmcad.question.slice import Count
 
 Alteration = Callable[[], RegionMap]
@@ -59,8 +60,10 @@ def window_area(r: RegionMap) -> Fraction:
 
 
 def settled(r: RegionMap) -> RegionMap:
-    """The map with merges, regions, separating components and non-adjacencies as the rest asks for."""
-    return with_regions(with_merges(with_non_adjacencies(r)))
+    """The map with merges, regions, separating components, non-adjacencies and plan as the rest
+    asks for.
+    """
+    return with_plan(with_regions(with_merges(with_non_adjacencies(r))))
 
 
 def changed(r: RegionMap, **changes: Any) -> RegionMap:
@@ -155,6 +158,17 @@ def with_non_adjacencies(r: RegionMap) -> RegionMap:
             reason = Reason.EDGE if branches == 1 and edges == 1 else reason
             found.append(old or NonAdjacency(s, here, there, below, above, reason))
     return replace(r, non_adjacencies=tuple(found))
+
+
+def with_plan(r: RegionMap) -> RegionMap:
+    """The plan that goes with slice and components; the reason for the base axis is the true map's."""
+    steps = plan_of(r.slice, r.components, r.base, (1, 2), frozenset(), NO_AREAS not in r.plan)
+    old = next(
+        (step.reason for step in r.plan if "predicted" in step.reason), "predicted cost 1 against 2"
+    )
+    return replace(
+        r, plan=tuple(replace(s, reason=old) if "predicted" in s.reason else s for s in steps)
+    )
 
 
 def renumbered_cells(

@@ -20,6 +20,7 @@ from forger.consistency import (
     renumbered_cells,
     settled,
     swapped,
+    with_plan,
 )
 from forger.decompose import decomposed
 from ptmcad.answer.regionmap import (
@@ -77,10 +78,11 @@ def component_invented(r: RegionMap) -> Iterator[Alteration]:
 
 
 def component_of_another_kind(r: RegionMap) -> Iterator[Alteration]:
+    """Its step of the plan follows."""
     for k, c in enumerate(r.components):
         for kind in Kind:
             if kind is not c.kind:
-                yield partial(replace, r, components=put(r.components, k, kind=kind))
+                yield partial(with_plan, replace(r, components=put(r.components, k, kind=kind)))
 
 
 def continuum_invented(r: RegionMap) -> Iterator[Alteration]:
@@ -108,9 +110,9 @@ def component_not_normal(r: RegionMap) -> Iterator[Alteration]:
     for k, c in enumerate(r.components):
         for factor in (2, -1):
             p = PlanePolynomial(tuple((i, j, factor * a) for i, j, a in c.polynomial.terms))
-            yield partial(replace, r, components=put(r.components, k, polynomial=p))
+            yield partial(with_plan, replace(r, components=put(r.components, k, polynomial=p)))
         square = _times(c.polynomial, c.polynomial)
-        yield partial(replace, r, components=put(r.components, k, polynomial=square))
+        yield partial(with_plan, replace(r, components=put(r.components, k, polynomial=square)))
 
 
 def components_multiplied(r: RegionMap) -> Iterator[Alteration]:
@@ -123,7 +125,9 @@ def components_multiplied(r: RegionMap) -> Iterator[Alteration]:
             # line
             lines = any(c.polynomial.degrees[1 - r.base] == 0 for c in (one, two))
             if one.left_out or lines:
-                yield partial(replace, r, components=(*drop(drop(r.components, k), j), both))
+                yield partial(
+                    with_plan, replace(r, components=(*drop(drop(r.components, k), j), both))
+                )
             else:
                 yield partial(decomposed, r, (*drop(drop(r.components, k), j), both))
 
@@ -132,14 +136,14 @@ def component_twice(r: RegionMap) -> Iterator[Alteration]:
     for c in r.components:
         for left_out in {c.left_out, NO_POINT}:
             more = (*r.components, replace(c, left_out=left_out, separates=False))
-            yield partial(replace, r, components=more)
+            yield partial(with_plan, replace(r, components=more))
 
 
 def component_that_is_constant(r: RegionMap) -> Iterator[Alteration]:
     for kind in Kind:
         for value in (1, 7):
             more = (*r.components, Component(PlanePolynomial(((0, 0, value),)), kind, NO_POINT))
-            yield partial(replace, r, components=more)
+            yield partial(with_plan, replace(r, components=more))
 
 
 def component_left_out(r: RegionMap) -> Iterator[Alteration]:
@@ -159,6 +163,13 @@ def component_left_out(r: RegionMap) -> Iterator[Alteration]:
             ):
                 continue  # it may be harmless as well
             yield partial(decomposed, r, put(r.components, k, left_out=reason, separates=False))
+
+
+def component_used_without_reason(r: RegionMap) -> Iterator[Alteration]:
+    """One without a point in the window is used, which the plan does not say."""
+    for k, c in enumerate(r.components):
+        if c.left_out == NO_POINT and 0 in c.polynomial.degrees:
+            yield partial(decomposed, r, put(r.components, k, left_out=""))
 
 
 def separating_component(r: RegionMap) -> Iterator[Alteration]:
@@ -433,7 +444,7 @@ def _with_wall(r: RegionMap, s: int, level: int, n: int, component: int) -> Regi
 KINDS = (
     component_dropped, component_invented, component_of_another_kind, component_altered, component_not_normal,
     components_multiplied, component_twice, component_that_is_constant, component_left_out,
-    separating_component, critical_value_moved, critical_polynomial,
+    component_used_without_reason, separating_component, critical_value_moved, critical_polynomial,
     critical_values_exchanged, critical_value_twice, critical_value_invented, origin_of_a_critical_value, stack_dropped,
     sample_of_a_stack, sample_of_a_cell, root_of_a_wall, component_of_a_wall, walls_exchanged, wall_dropped,
     wall_invented, continuum_invented,

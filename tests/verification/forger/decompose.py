@@ -12,7 +12,7 @@ from fractions import Fraction
 
 from support.replacing import replace
 
-from forger.consistency import NO_AREAS, settled
+from forger.consistency import NO_AREAS, settled, with_plan
 from ptmcad.answer.regionmap import Component, RegionMap
 from ptmcad.errors import HypothesisError
 from ptmcad.exact.cad.decomposition import Sample, crossings_of, cut_along, neighbours_of, seen_from
@@ -44,6 +44,7 @@ def decomposed(r: RegionMap, components: Sequence[Component]) -> RegionMap:
     found = replace(
         assemble(problem, options, PartialMap(cut.variety, cells)), plan=r.plan, system=r.system
     )
+    found = with_plan(found)
     areas = {frozenset(tuple(r.cells[n].sample) for n in g.cells): g.area for g in r.regions}
     whole = (Fraction(0), found.regions[0].area[1])
     if NO_AREAS in r.plan:

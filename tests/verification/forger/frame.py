@@ -1,5 +1,5 @@
-"""False claims about the rest: slice, window, equations, areas, status, and how tables refer to each
-other.
+"""False claims about the rest: slice, window, equations, areas, plan, status, and how tables refer
+to each other.
 """
 
 from __future__ import annotations
@@ -13,14 +13,17 @@ from typing import Any
 from support.replacing import replace
 
 from forger.consistency import (
+    NO_AREAS,
     Alteration,
+    drop,
     put,
     settled,
     swapped,
     window_area,
     with_merges,
+    with_plan,
 )
-from ptmcad.answer.regionmap import RegionMap, Status
+from ptmcad.answer.regionmap import PlanStep, RegionMap, Status
 from ptmcad.model import known_of
 from ptmcad.question.slice import Count
 from ptmcad.text.expressions import Expression, constant
@@ -91,11 +94,13 @@ def window_moved(r: RegionMap) -> Iterator[Alteration]:
 def _with_parameters(
     r: RegionMap, parameters: Mapping[str, Expression], text: Mapping[str, str]
 ) -> RegionMap:
-    return replace(r, slice=replace(r.slice, parameters=dict(parameters), text=dict(text)))
+    return with_plan(
+        replace(r, slice=replace(r.slice, parameters=dict(parameters), text=dict(text)))
+    )
 
 
 def parameter_changed(r: RegionMap) -> Iterator[Alteration]:
-    """One is a thousandth larger, or not zero any more, with its text to match."""
+    """One is a thousandth larger, or not zero any more, with its text and the plan to match."""
     axes = r.slice.axis_names
     for name, e in r.slice.parameters.items():
         if name in (*axes, "k"):
@@ -230,6 +235,56 @@ def relations_and_unknowns(r: RegionMap) -> Iterator[Alteration]:
     yield partial(replace, r, system=replace(s, gradient=(*s.gradient[1:], s.gradient[0] + " + 1")))
 
 
+def plan_step_dropped(r: RegionMap) -> Iterator[Alteration]:
+    """Not that of areas on one half of the window: the file is true without it."""
+    for k, step in enumerate(r.plan):
+        if step.what.startswith("areas on one half"):
+            continue
+        yield partial(replace, r, plan=drop(r.plan, k))
+
+
+def plan_step_invented(r: RegionMap) -> Iterator[Alteration]:
+    """One that exists twice, or a new one, at every place."""
+    new = (PlanStep("cells in the dark", False, "nobody sees them"),
+           PlanStep("components without a point in the window", True, "kept", "no-real-points"), NO_AREAS)  # fmt: skip
+    for k in range(len(r.plan) + 1):
+        for step in (*new, *r.plan[k : k + 1]):
+            yield partial(replace, r, plan=(*r.plan[:k], step, *r.plan[k:]))
+
+
+def plan_step_flipped(r: RegionMap) -> Iterator[Alteration]:
+    """Done, left out and the saving contradict the words."""
+    for k, step in enumerate(r.plan):
+        yield partial(replace, r, plan=put(r.plan, k, done=not step.done))
+
+
+def plan_step_changed(r: RegionMap) -> Iterator[Alteration]:
+    """Other words, another reason, another saving."""
+    for k, step in enumerate(r.plan):
+        for changes in ({"what": step.what + " "}, {"reason": "nobody asked"}, {"saving": "sloth"},
+                        {"reason": "predicted cost 9 against 3"}, {"reason": "predicted cost +++ against 3"},
+                        {"saving": "" if step.saving else "imports"}):  # fmt: skip
+            yield partial(replace, r, plan=put(r.plan, k, **changes))
+
+
+def plan_steps_exchanged(r: RegionMap) -> Iterator[Alteration]:
+    for j, k in combinations(range(len(r.plan)), 2):
+        if r.plan[j] != r.plan[k]:
+            yield partial(replace, r, plan=swapped(r.plan, j, k))
+
+
+def areas_not_asked_for(r: RegionMap) -> Iterator[Alteration]:
+    """The plan says so, but areas are known; or only some are not."""
+    if NO_AREAS in r.plan or len(r.regions) < 2:
+        return
+    k = next(k for k, step in enumerate(r.plan) if step.saving == "equal-counts")
+    silent = replace(r, plan=(*r.plan[:k], NO_AREAS, *r.plan[k + 1 :]))
+    yield partial(replace, silent)
+    for n, g in enumerate(r.regions):
+        unknown = tuple(replace(x, area=(Fraction(0), window_area(r))) for x in r.regions)
+        yield partial(replace, silent, regions=put(unknown, n, area=(Fraction(0), g.area[1])))
+
+
 def status_and_shares(r: RegionMap) -> Iterator[Alteration]:
     """Another status, an undetermined share, another number of complex solutions, another base
     axis.
@@ -293,6 +348,7 @@ def window_of_a_settled_map(r: RegionMap) -> Iterator[Alteration]:
 KINDS = (
     area_shifted, area_known_exactly, area_out_of_order, areas_exchanged, area_moved_between_regions, window_moved,
     parameter_changed, text_of_a_parameter, parameters_exchanged, axes_exchanged, parameter_missing, another_count,
-    admissible_counts, equations, relations_and_unknowns, status_and_shares, tables_left_out, references,
+    admissible_counts, equations, relations_and_unknowns, plan_step_dropped, plan_step_invented, plan_step_flipped,
+    plan_step_changed, plan_steps_exchanged, areas_not_asked_for, status_and_shares, tables_left_out, references,
     window_of_a_settled_map,
 )  # fmt: skip

@@ -107,7 +107,7 @@ FALSE = (*cells.KINDS, *curves.KINDS, *frame.KINDS)
 LIKELY = {
     "adjacency": "adjacencies", "all_adjacencies": "no adjacency missing", "box": "solutions", "counts": "counts",
     "component": "variety complete", "critical": "critical values", "sample": "walls and samples",
-    "wall": "walls and samples", "non_adjacency": "non-adjacencies", "area": "areas",
+    "wall": "walls and samples", "plan": "plan", "non_adjacency": "non-adjacencies", "area": "areas",
     "region": "regions", "equations": "equations", "text": "parameters as written",
     "continuum": "boundary components",
 }  # fmt: skip

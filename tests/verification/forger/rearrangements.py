@@ -16,6 +16,7 @@ from forger.consistency import (
     put,
     renumbered_components,
     window_area,
+    with_plan,
 )
 from ptmcad.answer.regionmap import RegionMap, Status
 from ptmcad.exact.models.system import on_axes
@@ -34,7 +35,12 @@ def regions_in_another_order(r: RegionMap) -> Iterator[Alteration]:
 def components_in_another_order(r: RegionMap) -> Iterator[Alteration]:
     number = len(r.components)
     for order in ([*range(number)][::-1], [*range(1, number), 0]):
-        yield partial(renumbered_components, r, order)
+        yield partial(_in_order, r, order)
+
+
+def _in_order(r: RegionMap, order: list[int]) -> RegionMap:
+    found = with_plan(renumbered_components(r, order))
+    return found
 
 
 def tables_in_another_order(r: RegionMap) -> Iterator[Alteration]:

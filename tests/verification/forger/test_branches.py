@@ -11,7 +11,7 @@ import pytest
 from flint import arb, arb_poly, arb_series, ctx, fmpq
 from support.replacing import replace
 
-from forger.consistency import drop, put, swapped
+from forger.consistency import drop, put, swapped, with_plan
 from forger.maps import named
 from ptmcad.answer.counts import Counts
 from ptmcad.answer.regionmap import (
@@ -51,6 +51,7 @@ from ptmcad.verification.fibrealgebra import SolutionAlgebra
 from ptmcad.verification.merging import check_merges, check_regions, check_shape
 from ptmcad.verification.norms import check_irreducible, check_norm
 from ptmcad.verification.parameterclaims import check_boundary, check_text
+from ptmcad.verification.planclaims import check_plan
 from ptmcad.verification.projections import check_critical_values, check_stacks
 from ptmcad.verification.report import Unchecked, Violation
 from ptmcad.verification.solutions import check_counts, check_solutions
@@ -163,13 +164,18 @@ def walled(r: RegionMap) -> int:
     return next(n for n, stack in enumerate(r.stacks) if stack.walls)
 
 
+NO_COUNTS: dict[str, None] = dict.fromkeys(("total", "stable", "index"))
+
+
 def joined(r: RegionMap) -> RegionMap:
-    """The cells of the second region are in the first one, and it is said to have them; so as many
-    are stored.
+    """The cells of the second region are in the first one, and it is said to have them, with no
+    counts in common; so as many are stored.
     """
     cells = tuple(replace(c, region=0 if c.region == 1 else c.region) for c in r.cells)
     members = tuple(n for n, c in enumerate(cells) if c.region == 0)
-    return replace(r, cells=cells, regions=put(put(r.regions, 0, cells=members), 1, cells=()))
+    return replace(
+        r, cells=cells, regions=put(put(r.regions, 0, cells=members, **NO_COUNTS), 1, cells=())
+    )
 
 
 FOLD = {"L1": 1, "L2": 1, "rho": 1, "k1": 1, "k2": 1, "k3": 1, "F3": 0, "F4": 0, "F3x": 0, "F4x": 0}
@@ -311,6 +317,12 @@ OTHERS: list[tuple[Check, str, Change, str]] = [
     (boundary, "fig3", kind_of(0, Kind.BOUNDARY), "component 0 is stored as boundary, but bounds nothing"),
     (check_left_out, "fig3", of("components", 0, left_out="it is ugly"), "for a reason that cannot be checked"),
     (check_left_out, "fig3", of("components", 0, left_out=NO_POINT), "is left out, but runs through the window"),
+    (check_plan, "fig3", lambda r: replace(r, plan=r.plan[1:]), "the plan has 12 steps, not 13"),
+    (check_plan, "fig3", of("plan", 0, reason="nobody asked"), "step 0 of the plan is not"),
+    (check_plan, "fig3", of("plan", 0, what="nothing"), "step 0 of the plan is not"),
+    (check_plan, "fig3", lambda r: with_plan(of("components", first(r, left_out=NO_POINT, kind=Kind.BOUNDARY),
+                                                left_out="")(r)), "is used, but it has no point in the window"),
+    (check_plan, "fig3+no-areas", of("regions", 0, area=(Fraction(0), HALF)), "areas are known, but"),
     (check_left_out, "fig3", kind_of(0, Kind.AUXILIARY), "is auxiliary, but no saving was"),
     (check_critical_values, "fig3", of("critical_values", 0, polynomial=(1, 2, 3)), "is no irreducible factor"),
     (check_critical_values, "fig3", lambda r: replace(r, critical_values=swapped(r.critical_values, 0, 1)),
@@ -382,7 +394,7 @@ OTHERS: list[tuple[Check, str, Change, str]] = [
     (check_regions, "fig3", lambda r: of("cells", r.regions[0].cells[-1], region=1)(r), "are joined, but in regions"),
     (check_regions, "fig3", lambda r: replace(r, regions=(*r.regions, r.regions[0])), "4 regions are stored, the adja"),
     (check_regions, "fig3", of("regions", 0, cells=(0,)), "region 0 is said to have cells"),
-    (check_regions, "fig3", joined, r"region 0 is said to have cells \(.*\), not \("),
+    (check_regions, "fig3", joined, r"the cells \(.*\) of region 0 are not"),
     (check_regions, "fig3", of("regions", 0, stable=9), "region 0: stable is"),
     (check_regions, "fig3", lambda r: of("regions", 0, sample=r.regions[1].sample)(r), "the sample of region 0 is not"),
     (check_areas, "diagonal", area(0, Fraction(0), Fraction(2)), "no area in the window is between"),
@@ -448,6 +460,10 @@ def test_a_box_may_be_as_wide_as_a_circle() -> None:
 def test_bounds_that_begin_with_the_area_itself_are_not_checked(above: Fraction) -> None:
     """No enclosure is within them, and none is off them."""
     assert isinstance(check_areas(Claims(area(0, HALF, HALF + above)(diagonal()))), Unchecked)
+
+
+def test_a_base_that_is_the_second_axis_is_no_fault() -> None:
+    check_plan(Claims(the("7")))
 
 
 def test_the_diagonal_is_true_where_it_is_used() -> None:

@@ -17,7 +17,7 @@ from support.shipped_records import EXACT
 
 import ptmcad
 from forger import cells, certified, rearrangements
-from forger.consistency import drop, put, settled
+from forger.consistency import drop, put, settled, with_plan
 from forger.judge import FALSE, Tally, judged, places_of, violation
 from forger.maps import CONFIGS, named
 from ptmcad.answer.regionmap import NO_POINT, Component, Kind, RegionMap
@@ -116,10 +116,10 @@ def test_areas_are_not_tried_over_walls_that_are_not_there(
 
 
 def test_no_curve_is_auxiliary(shipped: Callable[..., RegionMap]) -> None:
-    """Only an ablation has such curves."""
+    """Though its step of the plan says so: only an ablation has such curves."""
     r = shipped("fig2")
     line = Component(PlanePolynomial.of([(1, 0, 1), (0, 0, -1000)]), Kind.AUXILIARY, NO_POINT)
-    found = violation(replace(r, components=(*r.components, line)), "left out")
+    found = violation(with_plan(replace(r, components=(*r.components, line))), "plan")
     assert found is not None
     assert "auxiliary, but no saving was switched off" in found[1]
 
