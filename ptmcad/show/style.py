@@ -85,16 +85,6 @@ class PictureStyle(NamedTuple):
         return self.wide if self.wide is not None or self.size is None else self.size[0]
 
     @property
-    def flows(self) -> bool:
-        """Whether the picture grows with what it shows, as it does by default."""
-        return (
-            self.size is None
-            and self.font_size is None
-            and not self.font_family
-            and self.legend is None
-        )
-
-    @property
     def base_font(self) -> float:
         """The font's size, where it is not given in proportion to the picture's width."""
         if self.font_size is not None:
@@ -104,7 +94,7 @@ class PictureStyle(NamedTuple):
     @property
     def line_scale(self) -> float:
         """Of widths of lines and of marks, against those of a picture in 9 points."""
-        return 1.0 if self.flows else self.base_font / 9
+        return self.base_font / 9
 
     @property
     def strong(self) -> float:

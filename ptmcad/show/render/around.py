@@ -9,7 +9,6 @@ as short and as clear of text as exchanges of blocks make them.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
 from math import dist
 from typing import Any
 
@@ -20,10 +19,9 @@ from ptmcad.errors import ConfigError
 from ptmcad.show.drawable import no_drawing
 from ptmcad.show.render.blocks import LINE, Block, Plan, PointPoses, arranged, sized
 from ptmcad.show.render.colours import INK
-from ptmcad.show.render.fitting import larger
+from ptmcad.show.render.fitting import Layout, larger
 from ptmcad.show.render.inches import stroke, write_lines
 from ptmcad.show.render.labels import Box, Position, crosses
-from ptmcad.show.render.layout import Layout
 from ptmcad.show.render.mappicture import MapDrawing, left_out
 from ptmcad.show.render.posepicture import draw_pose
 from ptmcad.show.render.sketch import arrow_lengths
@@ -93,8 +91,7 @@ def _drawn(drawing: MapDrawing, points: Sequence[PointPoses]) -> DrawnMap:
     style = drawing.style
     plan, size, inner, (seen, layout) = _planned(drawing, points)
     figure = Figure(figsize=size, dpi=drawing.dpi, facecolor="white")
-    moved = _moved(layout, plan.taken[0], size)
-    axes = inner.draw_parts(figure, seen, moved)
+    axes = inner.draw_parts(figure, seen, layout.moved(plan.taken[0], size))
     figure.draw_without_rendering()  # which makes the numbers at the ticks
     inches = figure.dpi_scale_trans.inverted()
     texts: list[Box] = [
@@ -128,18 +125,6 @@ def _planned(
         raise ConfigError(
             "the map and its legend have no room beside the poses", key=error.key
         ) from error
-
-
-def _moved(layout: Layout, left: float, size: Size) -> Layout:
-    """The layout further to the right on a wider page."""
-    return replace(
-        layout,
-        size=size,
-        chart=(layout.chart[0] + left, *layout.chart[1:]),
-        title_at=(layout.title_at[0] + left, layout.title_at[1]),
-        legend=tuple(((x + left, y), part) for (x, y), part in layout.legend),
-        insets=tuple((box[0] + left, *box[1:]) for box in layout.insets),
-    )
 
 
 def _tip(axes: Any, at: Position) -> Position:

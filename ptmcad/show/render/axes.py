@@ -14,9 +14,12 @@ from fractions import Fraction
 from typing import Any
 
 from ptmcad.question.slice import Slice
+from ptmcad.show.render.inches import Box, text_width
+from ptmcad.show.style import Size
 from ptmcad.show.units import unit, with_unit
 from ptmcad.text.numerals import decimal_places, magnitude, power_of_ten, shortest_text
 
+Interval = tuple[Fraction, Fraction]
 _LETTERS = "alpha beta gamma delta epsilon zeta eta theta iota kappa lambda mu nu xi omicron pi rho sigma tau upsilon phi"
 _GREEK = dict(
     zip((*_LETTERS.split(), "chi", "psi", "omega"), "αβγδεζηθικλμνξοπρστυφχψω", strict=True)
@@ -86,9 +89,7 @@ def scale_of(low: Fraction, high: Fraction, digits: int = 4) -> Scale:
     return Scale(offset, exponent, float((low - offset) / power), float((high - offset) / power))
 
 
-def ticks(
-    interval: tuple[Fraction, Fraction], scale: Scale, most: int = 6
-) -> list[tuple[str, Fraction]]:
+def ticks(interval: Interval, scale: Scale, most: int = 6) -> list[tuple[str, Fraction]]:
     """Round numbers of a scale between the ends, as text, and where they are (0 to 1).
 
     Parameters
@@ -155,46 +156,67 @@ class Dress:
     small: bool = False
     scale: float = 1.0
 
+    @property
+    def tick_length(self) -> float:
+        return (2 if self.small else 3.5) * self.scale
 
-SMALL = Dress(7, 7, (4, 4), small=True)
+
+_TICK_PAD, _NAME_PAD, _TALL = 3.5, 4.0, 1.17
+"""In points, from a tick to its number and from there to the axis's name; a line of text against its
+size.
+"""
 
 
-def dress(
-    axes: Any,
-    slice: Slice,
-    x: tuple[Fraction, Fraction],
-    y: tuple[Fraction, Fraction],
-    how: Dress | None = None,
-) -> None:
+def _marks(
+    slice: Slice, number: int, interval: Interval, how: Dress
+) -> tuple[Scale, str, list[tuple[str, Fraction]]]:
+    """An axis's scale, its name and its ticks; in small axes (insets) without units."""
+    scale = scale_of(*interval, digits=2 if how.small else 4)
+    short = _cut(symbol(slice.axes[number].name), 10 if how.small else 40)
+    name = scale.name(short, 9 if how.small else 24)
+    name = with_unit(name, "" if how.small else unit(slice, number))
+    return scale, name, ticks(interval, scale, how.intervals[number])
+
+
+def dress(axes: Any, slice: Slice, x: Interval, y: Interval, how: Dress | None = None) -> None:
     """Give matplotlib axes their limits, ticks and names; in small ones (insets) without units."""
     from matplotlib import rcParams
-    from matplotlib.ticker import MaxNLocator, ScalarFormatter
 
     how = how or Dress()
-    small = how.small
     for spine in axes.spines.values():
         spine.set_linewidth(how.scale * rcParams["axes.linewidth"])
-    for number, (matplotlib_axis, interval) in enumerate(((axes.xaxis, x), (axes.yaxis, y))):
-        scale = scale_of(*interval, digits=2 if small else 4)
+    for number, (axis, interval) in enumerate(((axes.xaxis, x), (axes.yaxis, y))):
+        scale, name, marks = _marks(slice, number, interval, how)
         (axes.set_ylim if number else axes.set_xlim)(scale.low, scale.high)
-        matplotlib_axis.set_major_locator(
-            MaxNLocator(nbins=how.intervals[number], steps=[1, 2, 2.5, 5, 10])
-        )
-        formatter = ScalarFormatter(useOffset=False)
-        formatter.set_scientific(False)
-        matplotlib_axis.set_major_formatter(formatter)
-        text = scale.name(
-            _cut(symbol(slice.axes[number].name), 10 if small else 40), 9 if small else 24
-        )
-        known = "" if small else unit(slice, number)
-        matplotlib_axis.set_label_text(with_unit(text, known), fontsize=how.names)
-        axes.tick_params(
-            axis="y" if number else "x",
-            labelsize=how.ticks,
-            length=(2 if small else 3.5) * how.scale,
-            width=how.scale * rcParams["ytick.major.width" if number else "xtick.major.width"],
-            direction=rcParams["ytick.direction" if number else "xtick.direction"],
-        )
+        at = [scale.low + float(share) * (scale.high - scale.low) for _, share in marks]
+        axis.set_ticks(at, [text for text, _ in marks])
+        axis.set_label_text(name, fontsize=how.names)
+        axis.labelpad = _NAME_PAD
+        axis.set_tick_params(
+            labelsize=how.ticks, length=how.tick_length, pad=_TICK_PAD,
+            width=how.scale * rcParams["xtick.major.width"],
+        )  # fmt: skip
+
+
+def margins(slice: Slice, x: Interval, y: Interval, how: Dress, sides: Size) -> Box:
+    """Inches that numbers and names take at the left of axes of these sides, below, at the right and
+    above.
+    """
+    found = [_marks(slice, number, interval, how) for number, interval in enumerate((x, y))]
+    wide = [max((text_width(text, how.ticks) for text, _ in of), default=0.0) for _, _, of in found]
+    tall = _TALL * how.ticks / 72
+    rest = (how.tick_length + _TICK_PAD + _NAME_PAD + _TALL * how.names) / 72
+    # a name may be longer than its axis
+    across, up = (
+        (text_width(name, how.names) - side) / 2
+        for (_, name, _), side in zip(found, sides, strict=True)
+    )
+    return (
+        max(rest + wide[1], across),
+        max(rest + tall, up),
+        max(wide[0] / 2, across),
+        max(tall / 2, up),
+    )
 
 
 def _cut(text: str, most: int) -> str:

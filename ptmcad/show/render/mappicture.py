@@ -15,6 +15,7 @@ from __future__ import annotations
 import textwrap
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -23,13 +24,11 @@ from matplotlib.figure import Figure
 
 from ptmcad.answer.regionmap import RegionMap
 from ptmcad.answer.words import noun, several
-from ptmcad.errors import ConfigError
 from ptmcad.show.render.axes import dress, heading_of
 from ptmcad.show.render.colours import INK, Paint, paint_of
-from ptmcad.show.render.fitting import PageParts, fitted
+from ptmcad.show.render.fitting import SIDE, Layout, PageParts, fitted
 from ptmcad.show.render.inches import Box, axes_at, write_lines
-from ptmcad.show.render.layout import SIDE, Layout, flowing, title_lines
-from ptmcad.show.render.legend import Entry, draw_legend, entries, hidden_entries, point_mark
+from ptmcad.show.render.legend import Entry, Type, draw_legend, entries, hidden_entries, point_mark
 from ptmcad.show.render.outline import Shapes, shapes
 from ptmcad.show.render.painting import Overlay, draw_overlay, overlay_entries, paint_map
 from ptmcad.show.render.printing import save, settings
@@ -188,69 +187,55 @@ class MapDrawing(NamedTuple):
         result = self.result
         seen, layout = self.fit()
         figure = Figure(figsize=layout.size, dpi=self.dpi, facecolor="white")
-        figure.set_label(f"{' '.join(title_lines(whole_title(result)))}\n{description(result)}")
+        figure.set_label(f"{whole_title(result)}\n{description(result)}")
         self.draw_parts(figure, seen, layout)
         return figure, left_out(seen, layout)
 
     def fit(self) -> tuple[_Seen, Layout]:
-        """The contents of a page of a given size, and their places.
+        """The contents of a page, and their places.
 
         Which regions are thin follows from the map's size, which follows from the text about thin
         regions.
         """
-        result, style, whole = self.result, self.style, shapes(self.result)
-        wide, tall = style.size or (8.4, 5.7)
-        sides = (SIDE, SIDE) if style.flows else (wide / 2, tall / 2)
-        seen, tries = _seen(whole, sides, self.dpi), 3
-        if style.flows:
-            return seen, flowing(self.title, self.legend(seen)[0], style, len(seen.views))
+        style, whole = self.style, shapes(self.result)
+        side = SIDE * style.base_font / 72
+        wide, tall = style.size or (2 * side, 2 * side)
+        seen = _seen(whole, (wide / 2, tall / 2), self.dpi)
+        tries = 3
         while True:
-            parts = PageParts(
-                result.slice,
-                self.title,
-                self.legend(seen),
-                (whole.view, *(outline.view for outline, _ in seen.views)),
-                style,
+            views = (whole.view, *(outline.view for outline, _ in seen.views))
+            legend = partial(self.legend, seen)
+            layout = fitted(
+                PageParts(self.result.slice, self.title, legend, views, style), style.size
             )
-            try:
-                layout = fitted(parts, style.size or _natural(parts))
-            except ConfigError:
-                if not seen.hidden:
-                    raise
-                # a small picture rather has no word on the thin regions without a label, which it
-                # shows all the same
-                shorter = replace(parts, legends=self.legend(seen, with_hidden=False))
-                layout = fitted(shorter, style.size or _natural(shorter))
+            sides = layout.chart[2:]
             if seen.views and not layout.insets:
                 # what no inset shows is named by a label that an arrow leads to it, if that has
                 # room
-                sides = (72 * layout.chart[2], 72 * layout.chart[3])
-                bare = seen.with_room(sides, layout.arrow_size)
+                bare = seen.with_room((72 * sides[0], 72 * sides[1]), layout.arrow_size)
                 if bare is not seen:
                     seen, tries = bare, 1
                     continue
-            again = _seen(whole, (layout.chart[2], layout.chart[3]), self.dpi, seen)
+            again = _seen(whole, sides, self.dpi, seen)
             tries -= 1
             if again is seen or not tries:
                 return seen, layout
             seen = again
 
-    def legend(
-        self, seen: _Seen, with_hidden: bool = True
-    ) -> tuple[tuple[Entry, ...], tuple[Entry, ...]]:
-        """The legend with areas and without; ``with_hidden`` says whether it states how many thin regions
+    def legend(self, seen: _Seen, areas: bool, hidden: bool) -> Sequence[Entry]:
+        """The legend with or without areas; ``hidden`` says whether it states how many thin regions
         have no label.
         """
         if self.style.legend is LegendPlace.NONE:
-            return (), ()
+            return ()
         paint = paint_of(self.style, self.result)
         dot = point_mark(color=INK, marker="o", markersize=2.5 * paint.scale)
-        dots = [Entry(("sample point of a cell",), dot)] if self.samples else []
-        rest = (*dots, *hidden_entries(seen.hidden * with_hidden), *overlay_entries(self.overlay))
-        full, short = (
-            (*entries(self.result, seen.thin_lines, paint, areas), *rest) for areas in (True, False)
-        )
-        return full, short
+        return [
+            *entries(self.result, seen.thin_lines, paint, areas),
+            *([Entry(("sample point of a cell",), dot)] if self.samples else []),
+            *hidden_entries(seen.hidden * hidden),
+            *overlay_entries(self.overlay),
+        ]
 
     def draw_parts(self, figure: Figure, seen: _Seen, layout: Layout) -> Any:
         """Everything in its place; the map's axes."""
@@ -268,8 +253,9 @@ class MapDrawing(NamedTuple):
                 clip_on=False,
             )  # fmt: skip
         dress(axes, result.slice, seen.whole.view.x, seen.whole.view.y, layout.axes)
-        for corner, part in layout.legend:
-            draw_legend(figure, part, *corner, layout.type)
+        type = Type.of(self.style, layout.font)
+        for corner, entry in layout.legend:
+            draw_legend(figure, [entry], *corner, type)
         marked = seen.marked if layout.insets else seen.ranked
         names = [
             _name_of(result, s, k if len(marked) > 1 and layout.insets else None)
@@ -297,20 +283,6 @@ def left_out(seen: _Seen, layout: Layout) -> tuple[str, ...]:
     if layout.shortened:
         found.append("the areas in the legend")
     return tuple(found)
-
-
-def _natural(parts: PageParts) -> Size:
-    """A size for a map as large as in a picture that grows with what it shows, in proportion to the
-    text.
-    """
-    style = parts.style
-    scale = style.base_font / 9
-    lines = sum(len(entry.lines) for entry in parts.legends[0])
-    wide = {LegendPlace.RIGHT: 8.4, None: 8.4, LegendPlace.BELOW: 6.0, LegendPlace.NONE: 5.7}[
-        style.legend
-    ]
-    tall = 5.7 + (0.1 * lines if style.legend is LegendPlace.BELOW else 0.0)
-    return wide * scale, tall * scale
 
 
 def whole_title(result: RegionMap) -> str:
