@@ -35,7 +35,7 @@ _COLUMNS = (20.0, 14.0, 11.0, 8.5)
 _INSETS, _OVER = ((15.0, 9.6), (15.0, 6.0)), 2.9
 """An inset's sides, if there is room and if there is little, and what stands above."""
 _RIM, _GAP = 0.4, 1.0
-"""Around the page, and between columns."""
+"""Around a page of a given size (three times as much around one that grows), and between columns."""
 _TITLE = 1.22
 """Against the size of other text, that of a title and of the axes' names."""
 _STEPS, _STEP = 60, 1.05
