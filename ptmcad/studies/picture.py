@@ -21,7 +21,9 @@ from ptmcad.text.numerals import power_of_ten
 
 DPI = 110
 COLUMNS = 4
-LETTERS = 12
+BESIDE = 1.6
+"""Factor of what is beside the marks, so that one of 1, 2 and 5 is seen at least."""
+LETTERS = 15
 """In an inch of what stands below."""
 COLORS = ("#0b5394", "#38761d", "#741b47", "#b45f06", "#555555", "#8a7d00", "#009e73", "#c00000")
 STYLES: tuple[dict[str, Any], ...] = (
@@ -76,12 +78,12 @@ def draw(
             axes.set_title(name, fontsize=10)
             axes.set(xscale="log", xlabel=x, ylabel="" if number % columns else y)
             axes.set_yscale("symlog", linthresh=least, linscale=0.5)
-            axes.margins(x=0.1)
             axes.set_ylim(
                 -0.4 * least if min(heights) <= 0 else least / 2, 4 * max(least, *heights)
             )
             axes.axhspan(-least, least, color="#eef3e6", zorder=0)
             low, high = axes.get_xlim()
+            axes.set_xlim(low / BESIDE, high * BESIDE)
             axes.yaxis.get_major_locator().set_params(numticks=8)  # type: ignore[call-arg]
             axes.yaxis.set_major_formatter(_decade)
             axes.xaxis.set_major_locator(
