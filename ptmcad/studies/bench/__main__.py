@@ -30,7 +30,7 @@ from ptmcad.studies.bench.stored import write_study
 from ptmcad.studies.bench.study import difference
 
 FLOOR = (sys.executable, "-c", "import flint, numpy, click, yaml")
-LIMITS = ("--tolerance", "1/20", "--jobs", "1", "--timeout", "30")
+LIMITS: tuple[str, ...] = ("--tolerance", "1/20", "--jobs", "1", "--timeout", "30")
 """Of certified runs of an ablation."""
 
 
