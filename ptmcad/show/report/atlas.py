@@ -292,10 +292,10 @@ def sketch(result: RegionMap) -> Thumbnail:
     legend = {count_text(region, count): fill_of(region, count) for region in result.regions}
     for factor in (1, 3, 9):
         paths: dict[Fill, str] = {}
-        for number, region in enumerate(result.regions):
+        for region, polygons in zip(result.regions, seen.polygons(factor * TOLERANCE), strict=True):
             fill = fill_of(region, count)
             if fill != plate:
-                data = outline_data(seen.polygons(number, factor * TOLERANCE), SIDE / GRID)
+                data = outline_data(polygons, SIDE / GRID)
                 paths[fill] = paths.get(fill, "") + data
         drawn = Thumbnail(plate, tuple(paths.items()), tuple(legend.items()), result.slice.fixed)
         if sum(map(len, paths.values())) <= MAX_CHARACTERS:

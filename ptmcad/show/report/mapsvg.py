@@ -24,10 +24,9 @@ from ptmcad.model import Model
 from ptmcad.show.render.axes import scale_of, symbol, ticks
 from ptmcad.show.render.colours import Fill, fill_of
 from ptmcad.show.render.labels import Position
-from ptmcad.show.render.outline import Shapes
 from ptmcad.show.render.polylines import GRID, path_data
 from ptmcad.show.render.slivers import innermost, thin_regions, zooms
-from ptmcad.show.render.view import Floats, from_above
+from ptmcad.show.render.view import Floats, Shapes, from_above
 from ptmcad.show.table import count_text
 from ptmcad.show.units import unit, with_unit
 from ptmcad.text.numerals import shortest_text
@@ -103,26 +102,26 @@ def hatch_id(hatch: str) -> str:
     return f"hatch-{ord(hatch[0]):x}-{len(hatch)}"
 
 
+_MARKS = {
+    "/": '<path d="M0 12L12 0"/>',
+    "\\": '<path d="M0 0L12 12"/>',
+    "x": '<path d="M0 0L12 12M0 12L12 0"/>',
+    "-": '<path d="M0 6H12"/>',
+    "|": '<path d="M6 0V12"/>',
+    "+": '<path d="M0 6H12M6 0V12"/>',
+    ".": '<circle class="dot" cx="6" cy="6" r="1.5"/>',
+    "o": '<circle cx="6" cy="6" r="3"/>',
+    "*": '<path d="M6 2.4V9.6M2.4 6H9.6M3 3L9 9"/>',
+}
+"""Of matplotlib's hatch characters, a tile of 12 units, which is the size of four characters."""
+
+
 def _pattern(hatch: str) -> str:
     """A tile whose density follows the number of characters, as in the other pictures."""
     size = round(48 / len(hatch), 1)
-    half = size / 2
-    marks = {
-        "/": f'<path d="M0 {size}L{size} 0"/>',
-        "\\": f'<path d="M0 0L{size} {size}"/>',
-        "x": f'<path d="M0 0L{size} {size}M0 {size}L{size} 0"/>',
-        "-": f'<path d="M0 {half}H{size}"/>',
-        "|": f'<path d="M{half} 0V{size}"/>',
-        "+": f'<path d="M0 {half}H{size}M{half} 0V{size}"/>',
-        ".": f'<circle class="dot" cx="{half}" cy="{half}" r="{size / 8:.2f}"/>',
-        "o": f'<circle cx="{half}" cy="{half}" r="{size / 4:.2f}"/>',
-        "*": f'<path d="M{half} {size / 5:.2f}V{size * 0.8:.2f}M{size / 5:.2f} {half}H{size * 0.8:.2f}'
-        f'M{size / 4:.2f} {size / 4:.2f}L{size * 0.75:.2f} {size * 0.75:.2f}"/>',
-    }
-    body = "".join(marks[c] for c in dict.fromkeys(hatch))
     return (
         f'<pattern id="{hatch_id(hatch)}" class="hatch" width="{size}" height="{size}" '
-        f'patternUnits="userSpaceOnUse">{body}</pattern>'
+        f'viewBox="0 0 12 12" patternUnits="userSpaceOnUse">{_MARKS[hatch[0]]}</pattern>'
     )
 
 
@@ -210,9 +209,9 @@ def region_outlines(seen: Shapes, simpler: bool = True) -> Iterator[tuple[int, s
     simpler : whether to look for corners that can be left out, of which a coarse outline has few.
     """
     tolerance = (_WALLS if seen.result.cover is None else _RIMS) / SIDE if simpler else 0.0
-    for number in range(len(seen.result.regions)):
+    for number, polygons in enumerate(seen.polygons(tolerance)):
         # one path for all parts: where two of them share an edge no seam is left
-        outline = outline_data(seen.polygons(number, tolerance))
+        outline = outline_data(polygons)
         if outline:
             yield number, outline
 
