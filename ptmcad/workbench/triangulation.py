@@ -24,6 +24,11 @@ from ptmcad.show.render.polylines import refined
 Joined = list[tuple[Fraction, BoundaryStrips]]
 """Members with their values, in increasing order, whose boundaries have the same shape."""
 _DEPTH = 5
+_PLACES = (0.0, 0.25, 0.5, 0.75, 1.0)
+"""Where walls are cut at first."""
+_FIRST, _NEXT = slice(None, -1), slice(1, None)
+_CORNERS = ((_FIRST, _FIRST), (_FIRST, _NEXT), (_NEXT, _NEXT), (_NEXT, _FIRST))
+"""Of a quadrilateral between neighbouring members and columns, in turn."""
 _WELD = float(JUMP)
 """Of the window: ends of walls that are no further apart are one vertex."""
 
@@ -79,14 +84,8 @@ def mesh_of(runs: Sequence[Joined], axes: Axes, tolerance: Fraction) -> Mesh:
     flat = np.array(points).reshape(-1, 2) * widths + lows
     above = np.array(list(map(float, heights)))[member]
     of_sheet = np.array([k for k, own in enumerate(faces[1:]) for _ in own], dtype=np.int64)
-    vertices = np.column_stack([flat, above])
-    return (
-        vertices,
-        np.concatenate(faces),
-        of_sheet,
-        np.array(member, dtype=np.int64),
-        tuple(sheets),
-    )
+    vertices, of_vertex = np.column_stack([flat, above]), np.array(member, dtype=np.int64)
+    return vertices, np.concatenate(faces), of_sheet, of_vertex, tuple(sheets)
 
 
 def _walls(run: Joined, axes: Axes, tolerance: float) -> Iterator[_Grid]:
@@ -136,10 +135,5 @@ def _triangles(numbers: Integers, points: Floats) -> Integers:
     short = np.hypot(*(p - r).T).T <= np.hypot(*(q - s).T).T
     first = np.where(short, [a, b, c], [a, b, d])
     second = np.where(short, [a, c, d], [b, c, d])
-    found: Integers = np.moveaxis([first, second], (0, 1), (2, 3)).reshape(-1, 3)
+    found: Integers = np.moveaxis(np.stack([first, second]), (0, 1), (2, 3)).reshape(-1, 3)
     return found
-
-
-_FIRST, _NEXT = slice(None, -1), slice(1, None)
-_CORNERS = ((_FIRST, _FIRST), (_FIRST, _NEXT), (_NEXT, _NEXT), (_NEXT, _FIRST))
-_PLACES = (0.0, 0.25, 0.5, 0.75, 1.0)

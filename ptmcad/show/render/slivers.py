@@ -74,8 +74,7 @@ def unstable_zooms(whole: Shapes, pixels: int, most: int) -> tuple[Zoom, ...]:
     what is shown then is the map itself, with the thin curve around that part.
     """
     result = whole.result
-    all_known = all(None not in (region.total, region.index) for region in result.regions)
-    if result.cover is not None or not result.slice.count.is_of_stable or all_known:
+    if result.cover is not None or not result.slice.count.is_of_stable:
         return ()
     finer = told_apart(result)
     in_parts = replace(whole, result=finer)

@@ -29,7 +29,7 @@ from ptmcad.show.render.slivers import innermost, thin_regions, zooms
 from ptmcad.show.render.view import Floats, Shapes, from_above
 from ptmcad.show.table import count_text
 from ptmcad.show.units import unit, with_unit
-from ptmcad.text.numerals import shortest_text
+from ptmcad.text.numerals import approximate_text, shortest_text
 
 SIDE, RIM = 600, 24
 """In the picture's own units: the window's side, the rim."""
@@ -41,7 +41,8 @@ thin regions.
 """
 _WIDTHS = {".": 0.32, "−": 0.84}
 """Of characters against the type's size; digits are 0.64 wide."""
-_MAX_NAME = 24
+_MAX_NAME, _MAX_NUMBER = 24, 14
+"""Characters of an axis's name and of a number in words."""
 
 Mark = tuple[str, Position]
 """A letter and its place in the view, as fractions of the sides."""
@@ -159,21 +160,16 @@ def _window_text(seen: Shapes) -> str:
     axes = seen.result.slice.axes
     ends = (seen.view.x, seen.view.y)
     spans = (
-        f"{a.name} from {_shortened(e[0])} to {_shortened(e[1])}"
+        f"{a.name} from {shortened(e[0])} to {shortened(e[1])}"
         for a, e in zip(axes, ends, strict=True)
     )
     return "Region map over " + " and ".join(spans)
 
 
-def _shortened(value: Fraction) -> str:
+def shortened(value: Fraction) -> str:
+    """A number, to nine digits where it is long."""
     text = shortest_text(value)
-    return (
-        text
-        if len(text) <= 12
-        else f"{float(value):.6g}"
-        if abs(value) < 10**300
-        else text[:12] + "…"
-    )
+    return text if len(text) <= _MAX_NUMBER else approximate_text(value)
 
 
 def paints(fill: Fill, prefix: str = "") -> list[str]:
