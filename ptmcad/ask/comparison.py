@@ -217,9 +217,7 @@ def _side(result: RegionMap) -> _Side:
         When it contradicts itself.
     """
     complement, cells = component_cells(result)
-    region_of = {
-        place: result.cells[cell].region for place, cell in cells.items() if place is not None
-    }
+    region_of = {place: result.cells[cell].region for place, cell in cells.items()}
     if not all(region < len(result.regions) for region in region_of.values()):
         raise ConfigError(
             "the map contradicts itself (a cell is in no region); check it with ptmcad verify"

@@ -36,10 +36,11 @@ from ptmcad.show.render.legend import (
     in_rows,
     thin_entry,
 )
-from ptmcad.show.render.outline import Shapes, shapes
+from ptmcad.show.render.outline import shapes
 from ptmcad.show.render.painting import paint_map
 from ptmcad.show.render.printing import settings
 from ptmcad.show.render.slivers import Arrow, arrows_of, draw_arrows, seen_thin_walls
+from ptmcad.show.render.view import Shapes
 from ptmcad.show.style import MIN_FONT, LegendPlace, PictureStyle, Size
 from ptmcad.text.numerals import shortest_text
 
@@ -96,8 +97,9 @@ def draw_panels(
         view = panel.seen.view
         dress(axes, panel.seen.result.slice, view.x, view.y, how)
         draw_arrows(axes, panel.arrows, how.scale)
+        outlines = panel.seen.polygons() if panel.outlined else []
         for region, fill in (panel.outlined or {}).items():
-            rims = [np.vstack([rim, rim[:1]]) for rim in panel.seen.polygons(region)]
+            rims = [np.vstack([rim, rim[:1]]) for rim in outlines[region]]
             axes.add_artist(
                 LineCollection(
                     rims, transform=axes.transAxes, colors=fill.face, linewidths=0.1 * type.head,

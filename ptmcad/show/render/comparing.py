@@ -49,8 +49,7 @@ def traced(result: RegionMap) -> None:
         When the map contradicts itself.
     """
     seen = shapes(result)
-    for number in range(len(result.regions)):
-        deque(seen.polygons(number), maxlen=0)
+    seen.polygons()
     deque(seen.walls(), maxlen=0)
 
 

@@ -19,6 +19,7 @@ from matplotlib import rcParams
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
+from ptmcad.answer.remembered import remembered
 from ptmcad.errors import ConfigError
 from ptmcad.question.slice import Slice
 from ptmcad.show.render.axes import Dress, dress
@@ -26,7 +27,7 @@ from ptmcad.show.render.inches import ALLOWANCE, Box, few, wrapped
 from ptmcad.show.render.labels import Position
 from ptmcad.show.render.layout import Layout
 from ptmcad.show.render.legend import Entry, Type
-from ptmcad.show.render.view import View, remembered
+from ptmcad.show.render.view import View
 from ptmcad.show.style import MIN_FONT, LegendPlace, PictureStyle, Size
 
 MIN_SIDE = 11.0
