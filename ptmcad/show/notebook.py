@@ -1,4 +1,4 @@
-"""Results as a notebook shows them: a picture and a small table in HTML.
+"""Results as a notebook shows them: a picture, and the table of the terminal.
 
 Guarantee: everything from a record is escaped; nothing is loaded from elsewhere.
 """
@@ -6,19 +6,15 @@ Guarantee: everything from a record is escaped; nothing is loaded from elsewhere
 from __future__ import annotations
 
 from base64 import b64encode
-from collections.abc import Sequence
 from html import escape
 from typing import TYPE_CHECKING, Any
 
 from ptmcad.answer.motion import Motion
 from ptmcad.answer.poses import Poses
 from ptmcad.answer.regionmap import RegionMap
-from ptmcad.answer.words import count_words
 from ptmcad.show import render
 from ptmcad.show.style import DEFAULT
-from ptmcad.show.table import NOT_COMPUTED, area_digits, areas_are_known, count_text
-from ptmcad.text.enclosure import Enclosure
-from ptmcad.text.numerals import equalities
+from ptmcad.show.table import table
 
 if TYPE_CHECKING:
     from ptmcad.answer.boundaries import Grid
@@ -26,10 +22,8 @@ if TYPE_CHECKING:
     from ptmcad.answer.design import BestDesign
     from ptmcad.answer.family import FamilyMap
     from ptmcad.answer.field import Field
-    from ptmcad.answer.regionmap import Region
 
 DIGITS = 6
-MAX_ROWS = 20
 FPS, DPI = 20, 80
 """Of a film."""
 MAP_DPI, PAGE_DPI = 150, 100
@@ -43,38 +37,15 @@ def _picture(result: RegionMap, kind: str) -> bytes | None:
 
 
 def map_html(result: RegionMap) -> str:
-    """The picture, and the regions with their counts and areas."""
+    """The picture, and the table."""
     image = map_png(result)
     shown = "" if image is None else _image(image, result.slice.heading)
-    rows = [_region_row(result, k, r) for k, r in enumerate(result.regions[:MAX_ROWS])]
-    if len(result.regions) > MAX_ROWS:
-        rows.append(("…", f"{len(result.regions) - MAX_ROWS} more", "", "", ""))
-    index = count_words("({index})", result.slice.model)
-    head = ("region", result.slice.count.value, "in all", index, "area")
-    return f"<div><b>{escape(result.slice.heading)}</b>, {result.status.value}</div>{shown}{_table(head, rows)}"
-
-
-def _region_row(result: RegionMap, number: int, region: Region) -> tuple[str, ...]:
-    index = " ".join(map(str, region.index)) if region.index else "varies"
-    total = "varies" if region.total is None else str(region.total)
-    area = area_digits(result, region.area) if areas_are_known(result) else NOT_COMPUTED
-    return str(number), count_text(region, result.slice.count), total, index, area
+    return f"<div><b>{escape(result.slice.heading)}</b></div>{shown}{text_html(table(result))}"
 
 
 def poses_html(poses: Poses) -> str:
-    """Every solution with its unknowns, energy and stability; angles in degrees."""
-    model = poses.model
-    head = ("", "stable", *(f"{n} (°)" for n in model.angles), *model.reals, "energy", "index")
-    rows = [
-        (
-            str(k), {True: "yes", False: "no", None: "–"}[p.stable], *map(_text, p.degrees), *map(_text, p.reals),
-            "–" if p.energy is None else _text(p.energy), "–" if p.index is None else str(p.index),
-        )
-        for k, p in enumerate(poses.equilibria, 1)
-    ]  # fmt: skip
-    given = equalities(poses.parameters)
-    note = f"<div>{escape(poses.remark)}</div>" if poses.remark else ""
-    return f"<div><b>{escape(model.name)}</b>: {escape(given)}, {poses.status.value}</div>{_table(head, rows)}{note}"
+    """The table."""
+    return text_html(poses.table(min(DIGITS, poses.digits)))
 
 
 def comparison_html(comparison: Comparison) -> str:
@@ -120,16 +91,6 @@ def motion_html(motion: Motion) -> str:
 def text_html(text: str) -> str:
     """Text as a terminal shows it."""
     return f"<pre>{escape(text)}</pre>"
-
-
-def _text(value: Enclosure) -> str:
-    return value.text(DIGITS)
-
-
-def _table(head: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
-    columns = "".join(f"<th>{escape(h)}</th>" for h in head)
-    body = "".join("<tr>" + "".join(f"<td>{escape(v)}</td>" for v in row) + "</tr>" for row in rows)
-    return f"<table><thead><tr>{columns}</tr></thead><tbody>{body}</tbody></table>"
 
 
 def map_svg(result: RegionMap) -> str | None:

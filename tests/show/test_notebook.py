@@ -9,6 +9,7 @@ import re
 import subprocess
 import sys
 from fractions import Fraction
+from html import escape
 from html.parser import HTMLParser
 from typing import Any
 
@@ -166,12 +167,8 @@ def test_a_map_is_a_picture_and_a_table() -> None:
     html = shipped("fig4")._repr_html_()
     assert html.count("data:image/png;base64,") == 1
     assert "http" not in html
-    rows = read(html)
-    assert rows[0][:2] == ["region", "stable"]
-    assert [(r[1], r[2], r[-1]) for r in rows[1:]] == [
-        ("1", "varies", "3.2536"),
-        ("2", "6", "0.7464"),
-    ]
+    assert escape(shipped("fig4").table()) in html
+    assert "1: 3.2536" in html
     svg, png = shipped("fig4")._repr_svg_(), shipped("fig4")._repr_png_()
     assert svg is not None
     assert "<svg" in svg
@@ -189,10 +186,10 @@ def test_a_map_without_cells_has_no_picture() -> None:
 
 
 def test_poses_are_a_table() -> None:
-    rows = read(ptmcad.solve(rho="1", L2="3/2")._repr_html_())
-    assert rows[0] == ["", "stable", "th1 (°)", "th2 (°)", "energy", "index"]
-    assert [r[1] for r in rows[1:]] == ["yes", "yes", "no", "no", "no", "no"]
-    assert rows[1][2:] == ["46.5675", "28.9550", "112.5", "0"]
+    html = ptmcad.solve(rho="1", L2="3/2")._repr_html_()
+    read(html)
+    assert html.count("stable") == 3
+    assert all(f" {number}" in html for number in ("46.5675", "28.9550", "112.5"))
 
 
 def test_names_from_records_are_escaped() -> None:
