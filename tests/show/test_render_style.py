@@ -337,7 +337,7 @@ def test_no_text_is_smaller_than_is_read_on_paper(size: str) -> None:
 
 @pytest.mark.parametrize("palette", ["red,red", "red,#FF0000", "red,blue,#f00"])
 def test_a_palette_with_one_colour_twice_is_refused(palette: str) -> None:
-    with pytest.raises(ConfigError, match="is there twice"):
+    with pytest.raises(ConfigError, match="each once"):
         styled("default", palette=palette)
 
 
