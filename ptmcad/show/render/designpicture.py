@@ -94,7 +94,8 @@ def _draw_plane(figure: Figure, axes: Any, found: BestDesign) -> None:
     values = [value for _, _, value in known] + bounds
     if values:
         low, high = min(values), max(values)
-        look = {"cmap": COLOURS, "norm": Normalize(low, high if high > low else low + 1)}
+        norm = Normalize(low, high if high > low else low + 1)
+        look: dict[str, Any] = {"cmap": COLOURS, "norm": norm}
         patches = []
         for box in found.boxes:
             (a, b), (c, d) = (
@@ -107,7 +108,7 @@ def _draw_plane(figure: Figure, axes: Any, found: BestDesign) -> None:
         axes.add_collection(boxes)
         xs, ys, colours = np.reshape(known, (-1, 3)).T
         axes.scatter(xs, ys, 9, colours, edgecolors=INK, linewidths=0.3, zorder=3, **look)
-        bar = figure.colorbar(ScalarMappable(look["norm"], COLOURS), ax=axes, aspect=23, pad=0.02)
+        bar = figure.colorbar(ScalarMappable(norm, COLOURS), ax=axes, aspect=23, pad=0.02)
         bar.set_label(_value_name(found), fontsize=SIZE + 1)
         bar.ax.tick_params(labelsize=SIZE)
     if found.best is not None:

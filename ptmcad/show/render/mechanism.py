@@ -67,8 +67,8 @@ def draw_sketch(axes: Any, seen: Sketch, style: SketchColours, prefix: str) -> N
         parts.append(_line(points, "white", 2.4, 4))
         parts.append(_line(points, style["spring"], 0.95, 5, f"{prefix}{name}"))
     parts += [_pin(at, style["base"], f"{prefix}node-{name}") for name, at in seen.nodes.items()]
-    for name, *ends in seen.arrows:
-        parts.append(_arrow(ends, style["load"], f"{prefix}load-{name}"))
+    for name, start, end in seen.arrows:
+        parts.append(_arrow((start, end), style["load"], f"{prefix}load-{name}"))
     for placed in seen.labels:
         if placed.leader is not None:
             parts.append(_line((placed.at, placed.leader), style["text"], 0.4, 8))
@@ -125,7 +125,12 @@ def _arrow(ends: Sequence[Position], colour: str, gid: str | None = None) -> Any
 def _support(kind: Support, at: Position, colour: str) -> list[Any]:
     """A triangle on hatched ground, or a slider's box."""
     x, y = at
-    look = {"facecolor": "white", "edgecolor": colour, "linewidth": 0.9, "clip_on": False}
+    look: dict[str, Any] = {
+        "facecolor": "white",
+        "edgecolor": colour,
+        "linewidth": 0.9,
+        "clip_on": False,
+    }
     if kind is not Support.PIN:
         width, height = SLIDER if kind is Support.SLIDER_X else SLIDER[::-1]
         return [Rectangle((x - width, y - height), 2 * width, 2 * height, zorder=1.6, **look)]
@@ -167,8 +172,8 @@ def part_mark(part: str, style: SketchColours = STRONG, width: float = BAR_WIDTH
                 wound = coil(0j, 1 + 0j, 2 * half - 5.8, 5)
                 drawn = [_line((ends[0], *wound, ends[1]), style["spring"], 0.95, 5)]
             case "spiral":
-                wound = spiral((0, 0), (1, 0), SPIRAL[0] - 0.4, _SMALL_SPIRAL)
-                drawn = [_line(wound, style["spring"], 0.95, 5), _pin((0, 0), base)]
+                turns = spiral((0, 0), (1, 0), SPIRAL[0] - 0.4, _SMALL_SPIRAL)
+                drawn = [_line(turns, style["spring"], 0.95, 5), _pin((0, 0), base)]
             case _:
                 drawn = [_line(ends, style[part], width, 2)]
                 drawn[0].set_solid_capstyle("butt")
