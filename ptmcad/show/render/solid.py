@@ -19,9 +19,9 @@ from ptmcad.answer.family import FamilyMap
 from ptmcad.answer.regionmap import RegionMap
 from ptmcad.show.render.axes import axis_name, symbol
 from ptmcad.show.render.chartgrid import (
-    family_entries,
     head_and_foot,
     in_words,
+    map_entries,
     title_of,
     value_text,
 )
@@ -68,7 +68,7 @@ def _figure(
     figure = Figure(figsize=(wide, tall), dpi=dpi, facecolor="white")
     paint = paint_of(style, *family.members)
     colours = {} if surface is None else sheet_colours(family, surface, paint)
-    legend = family_entries(family, paint)
+    legend = map_entries(paint, *family.members)
     if surface is None:
         legend += _of_floors(family)
     else:
