@@ -210,8 +210,10 @@ def test_a_kill_leaves_nothing_of_msolve(tmp_path: Path, to: str) -> None:
     waits = f"import pathlib, time\npathlib.Path({str(asked)!r}).touch()\ntime.sleep(600)\n"
     program.write_text(f"#!{sys.executable}\n{waits}")
     program.chmod(0o755)
-    record = {"system": {"unknowns": {"x": "real", "y": "real"}, "equations": ["x^2 - a", "y^2 - b"]},
-              "axes": {"a": [1, 2], "b": [1, 2]}}  # fmt: skip
+    record = yaml.safe_load("""
+        system: {unknowns: {x: real, y: real}, equations: [x^2 - a, y^2 - b]}
+        axes: {a: [1, 2], b: [1, 2]}
+    """)
     (tmp_path / "record.yaml").write_text(json.dumps(record))
     command = [
         sys.executable,

@@ -131,19 +131,17 @@ def test_bars_have_the_lengths_of_their_parameters() -> None:
 # ------------------------------------------------------------------------------------------------------- other ones
 
 
-PENDULUM: dict[str, Any] = {
-    "name": "pendulum",
-    "parameters": {
-        "m": {"kind": "force", "default": 1},
-        "c": {"kind": "stiffness", "default": 1, "alias": ["c1"]},
-        "a": {"default": "1/2"},
-    },
-    "unknowns": {"phi": "angle", "x": "length"},
-    "points": {"O": [0, 0], "P": ["x + cos(2*phi)", "a*sin(phi - 3*phi)"]},
-    "springs": [{"between": ["O", "P"], "k": "2*c"}, {"between": ["O", "P"], "k": "c1"},
-                {"between": ["P", "O"], "k": "c1", "free": 1}],
-    "loads": {"P": [0, "-m"]},
-}  # fmt: skip
+PENDULUM: dict[str, Any] = yaml.safe_load("""
+name: pendulum
+parameters:
+  m: {kind: force, default: 1}
+  c: {kind: stiffness, default: 1, alias: [c1]}
+  a: {default: 1/2}
+unknowns: {phi: angle, x: length}
+points: {O: [0, 0], P: [x + cos(2*phi), a*sin(phi - 3*phi)]}
+springs: [{between: [O, P], k: 2*c}, {between: [O, P], k: c1}, {between: [P, O], k: c1, free: 1}]
+loads: {P: [0, -m]}
+""")
 
 
 def test_another_mechanism() -> None:

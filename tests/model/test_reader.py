@@ -25,29 +25,27 @@ from ptmcad.model.proofs import check_bars, check_unknowns
 
 CONFIGS = Path(__file__).resolve().parents[2] / "configs" / "mechanisms"
 
-PLATFORM: dict[str, Any] = {
-    "name": "platform",
-    "parameters": {
-        "L": {"kind": "length", "default": 1},
-        "a": {"kind": "length", "default": "1/2"},
-        "b": {"kind": "length", "default": "3/10"},
-        "k": {"kind": "stiffness", "default": 1},
-        "c": {"kind": "stiffness", "default": 2},
-        "W": {"kind": "force"},
-        "M": {"default": 0},
-    },
-    "unknowns": {"th": "angle", "phi": "angle", "x": "length"},
-    "points": {"O": ["x", 0], "P": ["x + L*cos(th)", "L*sin(th)"], "A": [1, 2], "B": [-1, "1/3"]},
-    "bodies": {
-        "plate": {"at": "P", "angle": "th + phi", "points": {"Q": ["a", 0], "R": ["a/2", "b"]}},
-        "tip": {"at": "R", "angle": "-phi", "points": {"T": [0, "b"]}},
-    },
-    "bars": [["O", "P"], ["P", "R"], ["Q", "R"], ["R", "T"]],
-    "springs": [{"between": ["A", "Q"], "k": "k"}, {"between": ["B", "T"], "k": "2*k + c"}],
-    "torsion": [{"angle": "phi - th", "k": "c", "rest": {"cos": "3/5", "sin": "4/5"}}],
-    "loads": {"R": {"weight": "W"}, "T": ["W/2", 0]},
-    "moments": {"th": "M", "x": "2*W"},
-}  # fmt: skip
+PLATFORM: dict[str, Any] = yaml.safe_load("""
+name: platform
+parameters:
+  L: {kind: length, default: 1}
+  a: {kind: length, default: 1/2}
+  b: {kind: length, default: 3/10}
+  k: {kind: stiffness, default: 1}
+  c: {kind: stiffness, default: 2}
+  W: {kind: force}
+  M: {default: 0}
+unknowns: {th: angle, phi: angle, x: length}
+points: {O: [x, 0], P: [x + L*cos(th), L*sin(th)], A: [1, 2], B: [-1, 1/3]}
+bodies:
+  plate: {at: P, angle: th + phi, points: {Q: [a, 0], R: [a/2, b]}}
+  tip: {at: R, angle: -phi, points: {T: [0, b]}}
+bars: [[O, P], [P, R], [Q, R], [R, T]]
+springs: [{between: [A, Q], k: k}, {between: [B, T], k: 2*k + c}]
+torsion: [{angle: phi - th, k: c, rest: {cos: 3/5, sin: 4/5}}]
+loads: {R: {weight: W}, T: [W/2, 0]}
+moments: {th: M, x: 2*W}
+""")
 
 
 def energy(at: dict[str, float]) -> float:
@@ -81,14 +79,14 @@ def value(p: Any, at: dict[str, float]) -> float:
     return total
 
 
-PENDULUM: dict[str, Any] = {
-    "parameters": {"W": {"kind": "force", "default": 1}, "M": {"default": 0}},
-    "unknowns": {"th": "angle"},
-    "points": {"O": [0, 0], "P": ["cos(th)", "sin(th)"]},
-    "bars": [["O", "P"]],
-    "loads": {"P": {"weight": "W"}},
-    "moments": {"th": "M"},
-}
+PENDULUM: dict[str, Any] = yaml.safe_load("""
+parameters: {W: {kind: force, default: 1}, M: {default: 0}}
+unknowns: {th: angle}
+points: {O: [0, 0], P: [cos(th), sin(th)]}
+bars: [[O, P]]
+loads: {P: {weight: W}}
+moments: {th: M}
+""")
 
 
 @pytest.mark.parametrize(
@@ -285,15 +283,15 @@ def test_a_built_in_name_is_not_taken_by_another() -> None:
 
 def test_stiffnesses_that_cancel_leave_an_unknown_loose() -> None:
     """Two springs whose energies add up to a constant: exact, not a matter of a sample."""
-    record = {
-        "parameters": {"k": {"kind": "stiffness"}},
-        "unknowns": {"th": "angle"},
-        "points": {"A": [1, 0], "B": [-1, 0], "P": ["cos(th)", "sin(th)"]},
-        "springs": [{"between": ["A", "P"], "k": "k"}, {"between": ["B", "P"], "k": "k"}],
-    }
+    record = yaml.safe_load("""
+        parameters: {k: {kind: stiffness}}
+        unknowns: {th: angle}
+        points: {A: [1, 0], B: [-1, 0], P: [cos(th), sin(th)]}
+        springs: [{between: [A, P], k: k}, {between: [B, P], k: k}]
+    """)
     with pytest.raises(ConfigError, match="no equation holds"):
         described(record)
-    record["springs"][0]["free"] = Fraction(1, 2)  # type: ignore[index]
+    record["springs"][0]["free"] = Fraction(1, 2)
     assert isinstance(described(record), Mechanism)
 
 

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+import yaml
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -21,10 +22,12 @@ from ptmcad.question.config.typed import Typed
 from ptmcad.text.syntax import parse
 from ptmcad.text.tree import Name, Number, names_of, replaced, to_text
 
-RECORD: dict[str, Any] = {
-    "name": "loads", "axes": {"rho": [0, 2], "L2": [0, 2]}, "parameters": {"F3": "F", "F4": "2*F - 1"},
-    "free": {"F": [-4, 0]},
-}  # fmt: skip
+RECORD: dict[str, Any] = yaml.safe_load("""
+name: loads
+axes: {rho: [0, 2], L2: [0, 2]}
+parameters: {F3: F, F4: 2*F - 1}
+free: {F: [-4, 0]}
+""")
 TEXT = """name: loads
 axes: {rho: [0, 2], L2: [0, 2]}
 parameters: {F3: F, F4: 2*F - 1}
@@ -59,14 +62,14 @@ def test_a_member_is_the_slice_that_one_would_type() -> None:
 
 def test_a_free_length_may_be_free_from_zero_on() -> None:
     family = family_from(
-        {"axes": {"rho": [1, 2], "L2": [1, 2]}, "free": {"l0": [0, 1]}, "members": 2}
+        yaml.safe_load("{axes: {rho: [1, 2], L2: [1, 2]}, free: {l0: [0, 1]}, members: 2}")
     )
     assert [family.member(value).has_free_lengths for value in family.values] == [False, True]
 
 
 def test_a_parameter_of_the_model_may_be_free() -> None:
     family = family_from(
-        {"axes": {"rho": [0, 2], "L2": [0, 2]}, "free": {"F3": [-4, 0]}, "members": [-1]}
+        yaml.safe_load("{axes: {rho: [0, 2], L2: [0, 2]}, free: {F3: [-4, 0]}, members: [-1]}")
     )
     assert family.member(Fraction(-1)).parameters["F3"].constant() == -1
     with pytest.raises(ConfigError, match="1 is outside of the range of F3"):

@@ -8,6 +8,7 @@ from pathlib import Path
 from textwrap import dedent
 
 import pytest
+import yaml
 
 import ptmcad
 from ptmcad.errors import ConfigError
@@ -240,13 +241,13 @@ def test_an_unknown_is_no_axis() -> None:
 
 # ---------------------------------------------------------------------------------- parameters of the record's own use
 
-PENDULUM = {
-    "parameters": {"L": {"kind": "length"}, "m": {"default": 1}, "W": {"kind": "force"}},
-    "unknowns": {"th": "angle"},
-    "points": {"O": [0, 0], "A": [0, 2], "P": ["L*sin(th)", "L*cos(th)"]},
-    "springs": [{"between": ["A", "P"], "k": 1}],
-    "loads": {"P": {"weight": "W"}},
-}
+PENDULUM = yaml.safe_load("""
+parameters: {L: {kind: length}, m: {default: 1}, W: {kind: force}}
+unknowns: {th: angle}
+points: {O: [0, 0], A: [0, 2], P: [L*sin(th), L*cos(th)]}
+springs: [{between: [A, P], k: 1}]
+loads: {P: {weight: W}}
+""")
 
 
 def test_a_parameter_that_a_records_expression_uses_is_used() -> None:
@@ -280,7 +281,7 @@ def test_an_alias_that_only_a_records_expression_uses_has_its_value() -> None:
 
 
 def test_an_alias_that_nothing_uses_is_told_at_its_parameter() -> None:
-    parameters = {**PENDULUM["parameters"], "L": {"kind": "length", "alias": ["l9"]}, "m": {}}  # type: ignore[dict-item]
+    parameters = {**PENDULUM["parameters"], "L": {"kind": "length", "alias": ["l9"]}, "m": {}}
     record = {
         "mechanism": {**PENDULUM, "parameters": parameters},
         "axes": {"L": [0, 2], "W": [0, 1]},
