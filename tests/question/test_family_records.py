@@ -10,6 +10,7 @@ import pytest
 import yaml
 from hypothesis import given
 from hypothesis import strategies as st
+from support.cases import cases
 
 from ptmcad.errors import ConfigError
 from ptmcad.question.config import (
@@ -78,27 +79,7 @@ def test_a_parameter_of_the_model_may_be_free() -> None:
 
 @pytest.mark.parametrize(
     ("change", "message"),
-    [
-        ({"free": {"F": [0, 0]}}, "the range of F is empty"),
-        ({"free": {"F": [-1, 0], "G": [0, 1]}}, "expected one parameter with its range"),
-        ({"free": {"G": [-1, 0]}}, "unknown name 'F'"),
-        ({"free": {"rho": [0, 1]}}, "rho is an axis too"),
-        ({"free": {"F3": [0, 1]}}, "F3 is free and cannot be fixed too"),
-        ({"parameters": {}}, "the free parameter F is not used"),
-        ({"members": [1]}, "1 is outside of the range of F"),
-        ({"members": [-1, -1]}, "-1 is given twice"),
-        ({"members": []}, "0 values are given"),
-        ({"members": 1}, "write how many members there are"),
-        ({"members": "2.5"}, "write how many members there are"),
-        ({"members": {"F": 1}}, "expected a list of values"),
-        ({"members": [[1]]}, "expected a number"),
-        ({"members": ["F"]}, "the value of a member is a number"),
-        (
-            {"parameters": {"F3": "F", "L1": "F + 2"}},
-            r"L1 is -2, but a length must be positive \(at F = -4\)",
-        ),
-        ({"parameters": {"F3": "1/F"}}, r"division by zero.*\(at F = 0\)"),
-    ],
+    cases("family_records", "faults"),
 )
 def test_what_is_wrong_is_said(change: dict[str, Any], message: str) -> None:
     with pytest.raises(ConfigError, match=message):
