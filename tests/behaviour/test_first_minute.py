@@ -54,27 +54,6 @@ def test_the_program_alone_prints_its_help(capfd: pytest.CaptureFixture[str]) ->
     assert max(map(len, out.splitlines())) < 80
 
 
-@pytest.mark.parametrize(
-    ("command", "suggestion"),
-    cases("first_minute", "misspelt"),
-)
-def test_what_is_misspelt_is_suggested(
-    command: str, suggestion: str, folder: Path, capfd: pytest.CaptureFixture[str]
-) -> None:
-    assert f"did you mean {suggestion}?" in refusal(command.split(), capfd)
-
-
-@pytest.mark.parametrize(
-    ("command", "start"),
-    cases("first_minute", "refused"),
-)
-def test_all_that_is_refused_has_one_form(
-    command: str, start: str, folder: Path, capfd: pytest.CaptureFixture[str]
-) -> None:
-    """``error: WHERE: WHAT``, whether an option's parser or the program itself refuses."""
-    assert refusal(command.split(), capfd).startswith(f"error: {start}")
-
-
 # ------------------------------------------------------------------------------------------------------------- floats
 
 TENTH = (0.1, np.float64(0.1), np.float32(0.1), Fraction(1, 10))

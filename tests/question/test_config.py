@@ -8,7 +8,6 @@ from pathlib import Path
 import pytest
 from support.cases import cases
 
-from ptmcad.cli import run
 from ptmcad.errors import ConfigError
 from ptmcad.model import ptm
 from ptmcad.question.config import load, point_from_mapping, slice_from_options
@@ -149,17 +148,6 @@ def test_a_record_whose_name_is_a_device_has_to_give_another(tmp_path: Path, fil
     assert (caught.value.key, caught.value.file) == ("name", str(tmp_path / file))
     (tmp_path / file).write_text(f"name: mine\n{AXES}")
     assert load(tmp_path / file).name == "mine"
-
-
-@pytest.mark.parametrize(
-    ("arguments", "key"),
-    cases("config", "names of files"),
-)
-def test_options_that_cannot_name_a_file(
-    capfd: pytest.CaptureFixture[str], arguments: list[str], key: str
-) -> None:
-    assert run(arguments) == 2
-    assert capfd.readouterr().err.startswith(f"error: {key}: ")
 
 
 def test_options_alone() -> None:

@@ -343,31 +343,6 @@ def test_command_prints_or_writes_the_same(
     assert [path.name for path in (tmp_path / "sub").iterdir()] == ["fig3.txt"]
 
 
-@pytest.mark.parametrize(
-    ("arguments", "message"),
-    [
-        (["variety"], "--slice L1,L2"),
-        (["variety", "nowhere.yaml"], "nowhere.yaml"),
-        (["variety", "--slice", "L2,rho", "--format", "fortran"], "fortran"),
-        (["variety", "--slice", "L2,rho", "--out", "."], "is a folder"),
-        (["variety", "--slice", "L2,rho", "--set", "L3=1"], "L3"),
-        (["variety", "--slice", "L1,L2", "--set", "rho=(L1+L2)/2"], "lies inside"),
-    ],
-)
-def test_bad_input_is_one_message(
-    arguments: list[str],
-    message: str,
-    tmp_path: Path,
-    monkeypatch: pytest.MonkeyPatch,
-    capsys: pytest.CaptureFixture[str],
-) -> None:
-    monkeypatch.chdir(tmp_path)
-    assert run(arguments) == 2
-    shown = capsys.readouterr()
-    assert message in shown.err and shown.out == ""
-    assert not list(tmp_path.iterdir())
-
-
 def test_unknown_format_in_python() -> None:
     with pytest.raises(ConfigError, match="maple"):
         variety("fig3").text("mapel")

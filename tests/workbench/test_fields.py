@@ -307,28 +307,6 @@ def test_the_command_writes_pictures_and_numbers(
     assert np.array_equal(table["value"].reshape(15, 20), expected, equal_nan=True)
 
 
-@pytest.mark.parametrize(
-    "arguments", [["--value", "nothing"], ["--pose", "best"], ["--pixels", "0"]]
-)
-def test_bad_options_leave_nothing(
-    arguments: list[str], tmp_path: Any, capsys: pytest.CaptureFixture[str]
-) -> None:
-    assert run(["map", "--slice", "L2,rho", "--out", str(tmp_path), *arguments]) == 2
-    assert arguments[0] in capsys.readouterr().err
-    assert not list(tmp_path.iterdir())
-
-
-@pytest.mark.parametrize(
-    "request_", ["--value barrier --pose saddle:1", "--value enrgy", "--value th1^1e400"]
-)
-def test_what_means_nothing_is_refused_before_the_map_is_made(
-    request_: str, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
-    monkeypatch.setattr("ptmcad.ask.classification.region_map", None)
-    assert run(["map", "--slice", "L2,rho", *request_.split()]) == 2
-    assert capsys.readouterr().err.startswith("error: --")
-
-
 def test_a_difference_from_exact_poses_is_said(
     tmp_path: Any, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
