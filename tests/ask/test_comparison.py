@@ -8,6 +8,7 @@ from fractions import Fraction
 from pathlib import Path
 
 import pytest
+import yaml
 from support.maps import shipped
 from support.replacing import replace
 
@@ -48,15 +49,12 @@ def test_the_area_between_two_lines() -> None:
 
 def test_lines_that_cross_make_changes_of_both_kinds() -> None:
     """b > a / 2 against b > 1/4: they cross at a = 1/2, with triangles of 1/16 at both sides."""
-    found = parabola("1/2").compare(
-        ptmcad.classify(
-            {
-                "system": {"unknowns": {"x": "real"}, "equations": ["x^2 - b + 1/4 + 0*a"]},
-                "axes": {"a": [0, 1], "b": [0, 1]},
-                "count": "total",
-            }
-        )
-    )
+    level = yaml.safe_load("""
+        system: {unknowns: {x: real}, equations: [x^2 - b + 1/4 + 0*a]}
+        axes: {a: [0, 1], b: [0, 1]}
+        count: total
+    """)
+    found = parabola("1/2").compare(ptmcad.classify(level))
     assert len(found.changes) == 2
     for change in found.changes:
         assert change.area[0] <= Fraction(1, 16) <= change.area[1]
