@@ -21,6 +21,7 @@ from ptmcad.cli.commonoptions import (
     name_option,
     option,
     out_option,
+    report_deadline,
 )
 from ptmcad.cli.drawing import picture, report_written, style_of
 from ptmcad.cli.progress import ProgressBar
@@ -92,6 +93,7 @@ def command(
     """
     if "mp4" in formats:
         require_ffmpeg()  # where it is missing, that is said before anything is computed
+    report_deadline(timeout)
     with ProgressBar() as progress:
         options = Options(areas=False, progress=progress, timeout=timeout)
         stored = stored_map(asked)

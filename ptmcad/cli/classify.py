@@ -22,6 +22,7 @@ from ptmcad.cli.commonoptions import (
     limit_options,
     option,
     out_option,
+    report_deadline,
     report_idle,
 )
 from ptmcad.cli.drawing import (
@@ -362,6 +363,7 @@ def command(
     """
     slice = question_asked(asked, count, third)
     options = replace(options, timeout=timeout)
+    report_deadline(timeout)
     if isinstance(slice, Family):
         _classify_family(slice, third, options, output, resume)
         return

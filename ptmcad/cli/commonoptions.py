@@ -287,14 +287,16 @@ def default_bound() -> Bound:
 
 
 def limit_options(command: F) -> F:
-    """Add ``--timeout``, of which the command gets the seconds where it has such a parameter, and
-    ``--max-memory``; it runs within both limits.
+    """Add ``--timeout`` and ``--max-memory``, within which the command runs.
+
+    One that has a parameter ``timeout`` gets the seconds, and starts their clock itself, by
+    `report_deadline` or `clock_stopped`, once it has read what it is asked.
     """
     passed = {"timeout"} & inspect.signature(command).parameters.keys()
 
     @wraps(command)
     def limited(*, timeout: float | None, max_memory: Bound | None, **given: Any) -> Any:
-        with held(timeout, max_memory):
+        with held(None if passed else timeout, max_memory):
             return command(**given, **dict.fromkeys(passed, timeout))
 
     return together(

@@ -21,6 +21,7 @@ from ptmcad.cli.commonoptions import (
     limit_options,
     option,
     out_option,
+    report_deadline,
     report_idle,
 )
 from ptmcad.cli.completion import poses, quantity_names
@@ -118,6 +119,7 @@ def command(
     stem = f"{slice.name}-{_slug(value)}-{_slug(pose)}"
     names = tuple(f"{stem}.{kind}" for kind in formats)
     check_writable(out, names)
+    report_deadline(timeout)
     with ProgressBar() as progress:
         from ptmcad.show import data
         from ptmcad.workbench.fields.quantityfield import expect_somewhere, field_of, request_of

@@ -23,6 +23,7 @@ from ptmcad.cli.commonoptions import (
     option,
     out_option,
     record_argument,
+    report_deadline,
 )
 from ptmcad.cli.completion import names, pair_of_names, quantity_names
 from ptmcad.cli.drawing import report_written, write_answer
@@ -206,6 +207,7 @@ def command(
     slice, fixed = slice_and_line(typed, along, at or {}, asked["over"])
     request = request_of(along, fixed, **asked)
     stem = name or f"{slice.name}-range"
+    report_deadline(timeout)
     kinds = [kind for kind in formats if kind != "json"]
     pictures = {f"{stem}{part}.{kind}": part for part in _parts(request) for kind in kinds}
     names = (*pictures, *[f"{stem}.json"] * ("json" in formats))

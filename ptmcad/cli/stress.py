@@ -105,10 +105,10 @@ def command(
         ptmcad stress --random 100 --seed 7 --format table
         ptmcad stress all --random 100
     """
+    limit = None if timeout is None else timeout + GRACE_SECONDS
+    report_deadline(limit)  # of the process; the campaign looks at the clock itself
     from ptmcad.studies.stress.case import free_lengths  # the cases' numbers need no library
 
-    limit = None if timeout is None else timeout + GRACE_SECONDS
-    report_deadline(limit)
     cases = _cases(names, number, seed, everything=only_list)
     if only_list:
         from ptmcad.studies.stress.campaign import listing

@@ -21,6 +21,7 @@ from ptmcad.cli.commonoptions import (
     limit_options,
     option,
     record_argument,
+    report_deadline,
 )
 from ptmcad.cli.completion import names
 from ptmcad.cli.drawing import picture, report_written, writer
@@ -141,6 +142,7 @@ def command(
         require_ffmpeg()
     folder = out or Path(f"{question.name}-sweep")
     wanted_files = tuple(f"{question.name}.{kind}" for kind in formats)
+    report_deadline(timeout)
     with ProgressBar() as progress:
         from ptmcad.workbench.sweeps.run import sweep, wanted_of
 

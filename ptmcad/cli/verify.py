@@ -22,7 +22,14 @@ from ptmcad.answer.family import FamilyMap
 from ptmcad.answer.poses import Poses
 from ptmcad.answer.regionmap import RegionMap, Status
 from ptmcad.answer.sweep import Bounds, Member, Summary
-from ptmcad.cli.commonoptions import gathered, limit_options, option, report_idle, result_argument
+from ptmcad.cli.commonoptions import (
+    gathered,
+    limit_options,
+    option,
+    report_deadline,
+    report_idle,
+    result_argument,
+)
 from ptmcad.cli.familyfiles import read_family_file
 from ptmcad.cli.progress import ProgressBar
 from ptmcad.cli.storedresults import MAX_BYTES, is_record, kind_of, read_other, read_result
@@ -73,6 +80,7 @@ def command(*, result: Path, how: Mapping[str, Any], timeout: float | None) -> i
         ptmcad classify --slice L2,rho --format json
         ptmcad verify slice-L2-rho.json
     """
+    report_deadline(timeout)
     with _clock(timeout) as over:
         from ptmcad.verification.report import VerifyReport
 
@@ -87,7 +95,7 @@ def command(*, result: Path, how: Mapping[str, Any], timeout: float | None) -> i
         if title:
             click.echo(f"in all: {whole.verdict}")
         if over:
-            click.echo(f"stopped: {_stopped(timeout)}", err=True)
+            click.echo(f"stopped: the time limit of {timeout:g} s was reached", err=True)
         return 1 if not whole.ok else 3 if over else 0
 
 
@@ -121,10 +129,6 @@ def _shown(check: Verify) -> VerifyReport:
     return report
 
 
-def _stopped(seconds: float | None) -> str:
-    return f"the time limit of {seconds:g} s was reached"
-
-
 @contextmanager
 def _clock(seconds: float | None) -> Iterator[list[int]]:
     """Raise `LimitReached` in what runs inside when the time is over, once; gives a list that is
@@ -137,7 +141,7 @@ def _clock(seconds: float | None) -> Iterator[list[int]]:
 
     def ring(number: int, _frame: FrameType | None) -> None:
         over.append(number)
-        raise LimitReached(_stopped(seconds))
+        raise LimitReached(f"the time limit of {seconds:g} s was reached")
 
     # an alarm would be taken for one from outside, which ends the program
     timer = Timer(seconds, os.kill, (os.getpid(), signal.SIGVTALRM))
@@ -216,10 +220,8 @@ def _verified_sweep(folder: Path, how: Mapping[str, Any], progress: Progress) ->
             return Unchecked(f"it is {member.state.value}: {member.error}")
         stored = member_map(sweep, member)
         for name, text in member.parameters.items():
-            known = stored.slice.parameters.get(name)
-            if known is not None and not (
-                known.is_constant and known.constant() == fraction_of(text)
-            ):
+            own = stored.slice.parameters.get(name)
+            if own is not None and not (own.is_constant and own.constant() == fraction_of(text)):
                 raise Violation(f"the map is not that of {name} = {text}")
         unknown = ", ".join(member.parameters.keys() - stored.slice.parameters.keys())
         if member.same_as is not None:
@@ -235,9 +237,7 @@ def _verified_sweep(folder: Path, how: Mapping[str, Any], progress: Progress) ->
             if true.widest is not None and _meet(widest.width, true.widest.width):
                 # an earlier version found it, with bounds of its own
                 true = replace(true, widest=widest)
-        wrong = [
-            part for part in Summary.__match_args__ if getattr(true, part) != getattr(summary, part)
-        ]
+        wrong = [p for p in Summary.__match_args__ if getattr(true, p) != getattr(summary, p)]
         if wrong:
             raise Violation(f"the index has another value than its map: {', '.join(wrong)}")
         report = verify(stored, **how)
