@@ -195,13 +195,14 @@ class ConfigError(PtmcadError):
 
 @contextmanager
 def blamed(key: str | None = None, file: object = None, line: int | None = None) -> Iterator[None]:
-    """Say what is wrong inside of an option, or of a place in a file."""
+    """Say what is wrong inside of an option, or of a place in a file; the error keeps its own
+    option where none is given, and has none where that is empty.
+    """
     try:
         yield
     except ConfigError as error:
-        raise ConfigError(
-            error.message, key=key, file=None if file is None else str(file), line=line
-        ) from error
+        place = Place(error.key if key is None else key, None if file is None else str(file), line)
+        raise place.error(error.message) from error
 
 
 def expect(value: object, kinds: type | tuple[type, ...], key: str, expected: str) -> None:

@@ -243,13 +243,6 @@ def _sweep_getitem(self: Sweep, number: int) -> Member:
     return next(members(self, [number]))
 
 
-def _sweep_table(self: Sweep) -> str:
-    """One screen: what has become of the members, and some of them."""
-    from ptmcad.show.sweeptable import table
-
-    return table(self, self.__iter__)
-
-
 def _sweep_result(self: Sweep, number: int) -> RegionMap:
     """The region map of a member.
 
@@ -261,13 +254,6 @@ def _sweep_result(self: Sweep, number: int) -> RegionMap:
     from ptmcad.workbench.sweeps.index import member_map
 
     return member_map(self, self[number])
-
-
-def _sweep_to_csv(self: Sweep) -> str:
-    """All members as CSV, in their order: the same text however the sweep was computed."""
-    from ptmcad.show.sweeptable import csv_text
-
-    return csv_text(self, self.__iter__)
 
 
 def _sweep_to_dataframe(self: Sweep) -> DataFrame:
@@ -282,9 +268,7 @@ def _sweep_to_dataframe(self: Sweep) -> DataFrame:
     from ptmcad.show.sweeptable import columns, counts_in, frame_rows
 
     names = [*columns(self, counts_in(self)), "seconds", "attempts"]
-    return pandas_frame(
-        frame_rows(self, self.__iter__), names, ("same_as", "cells", "regions", "attempts")
-    )
+    return pandas_frame(frame_rows(self), names, ("same_as", "cells", "regions", "attempts"))
 
 
 def _html(text: Callable[[Any], str]) -> Callable[[Any], str]:
@@ -357,9 +341,9 @@ METHODS |= {
     "Sweep": {
         "__iter__": "workbench.sweeps.index:members",
         "__getitem__": _sweep_getitem,
-        "table": _sweep_table,
+        "table": "show.sweeptable:table",
         "result": _sweep_result,
-        "to_csv": _sweep_to_csv,
+        "to_csv": "show.sweeptable:csv_text",
         "to_dataframe": _sweep_to_dataframe,
         "_repr_html_": _html(repr),
     },

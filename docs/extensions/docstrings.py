@@ -11,27 +11,15 @@ import re
 from docutils import nodes
 from sphinx.application import Sphinx
 
-_SECTIONS = ("Parameters", "Attributes")
-_ENTRY = re.compile(r"(\w+(?:, \w+)*) : (.*)")
+_ENTRY = re.compile(r"^(\w+(?:, \w+)*) : (.*)$", re.MULTILINE)
 BEFORE_NAPOLEON = 400
 
 
 def rewrite(
     _app: Sphinx, _what: str, _name: str, _object: object, _options: object, lines: list[str]
 ) -> None:
-    """Rewrite the lines in place."""
-    result: list[str] = []
-    section = ""
-    for number, line in enumerate(lines):
-        if (
-            number + 1 < len(lines)
-            and line.strip()
-            and re.fullmatch(r"-{3,}", lines[number + 1].strip())
-        ):
-            section = line.strip()
-        entry = _ENTRY.fullmatch(line) if section in _SECTIONS else None
-        result += [entry.group(1), f"    {entry.group(2)}"] if entry else [line]
-    lines[:] = result
+    """Rewrite the lines in place; only parameters and attributes have such lines."""
+    lines[:] = _ENTRY.sub(r"\1\n    \2", "\n".join(lines)).split("\n")
 
 
 def use_dashes(_app: Sphinx, doctree: nodes.document) -> None:

@@ -6,6 +6,7 @@ Guarantee: pictures and tables are computed from the record when the manual is b
 
 from __future__ import annotations
 
+import re
 from dataclasses import replace
 from pathlib import Path
 
@@ -47,82 +48,60 @@ def page(configs: Path, folder: Path) -> str:
     configs : the folder of problem records.
     folder : where the page will be.
     """
-    exact = (
-        path for path in sorted(configs.glob("*.yaml")) if not ptmcad.load(path).has_free_lengths
-    )
+    records = sorted(configs.glob("*.yaml"))
+    exact = (path for path in records if not ptmcad.load(path).has_free_lengths)
     return _START + "\n".join(entry(path, configs, folder) for path in exact)
 
 
 def models_page(configs: Path, folder: Path) -> str:
     """The page of the other mechanisms and systems, in the same way."""
-    records = [
-        *sorted((configs / "mechanisms").glob("*.yaml")),
-        *sorted((configs / "systems").glob("*.yaml")),
-    ]
+    records = (
+        path for kind in ("mechanisms", "systems") for path in sorted((configs / kind).iterdir())
+    )
     return _MODELS + "\n".join(entry(path, configs, folder) for path in records)
 
 
 def entry(path: Path, configs: Path, folder: Path) -> str:
     """One record: picture, what it shows, command, table and record."""
-    slice, text = ptmcad.load(path), path.read_text(encoding="utf-8")
+    slice, text, shown = ptmcad.load(path), path.read_text(encoding="utf-8"), "The map"
     picture = f"{path.stem}.svg"
     record = f"configs/{path.relative_to(configs).as_posix()}"
-    at = (CERTIFIED if path.stem in CERTIFIED else POSES).get(path.stem, {})
-    place = ",".join(f"{name}={value}" for name, value in at.items())
-    if path.stem in CERTIFIED:
-        picture = f"../img/{path.stem}.png"
-        commands = (f"ptmcad classify {record} --engine certified --tolerance 1/100 --format png",
-                    f"ptmcad solve {record} --at {place}")  # fmt: skip
-        table = ptmcad.solve(model=slice.model, **at).table()
-    elif path.stem in POSES:
-        found = ptmcad.solve(slice, **at)
-        save(draw_poses(found), folder / picture)
-        commands = (
-            f"ptmcad check {record}",
-            f"ptmcad solve {record} --at {place} --format table,svg",
-        )
-        table = found.table()
-    else:
+    at = {**CERTIFIED, **POSES}.get(path.stem)
+    if at is None:
         result = ptmcad.classify(slice)
         draw(result, folder / picture)
-        commands = (f"ptmcad classify {record} --format svg",)
+        commands = f"ptmcad classify {record} --format svg"
         table = (
             replace(result, timings={}).table().replace("time      not recorded; ", "          ")
         )
+    else:
+        found = ptmcad.solve(slice, **at)
+        table = found.table()
+        solve = f"ptmcad solve {record} --at {','.join(map('='.join, at.items()))}"
+        if path.stem in CERTIFIED:
+            picture = f"../img/{path.stem}.png"
+            options = "--engine certified --tolerance 1/100 --format png"
+            commands = f"ptmcad classify {record} {options}\n{solve}"
+        else:
+            shown = "Poses"
+            save(draw_poses(found), folder / picture)
+            commands = f"ptmcad check {record}\n{solve} --format table,svg"
     source = " ".join(str(slice.reference.get("source", "")).split())
-    notes = " ".join(yaml.safe_load(text).get("notes", "").split())
-    return "\n".join(
-        (
-            f"## {path.stem}",
-            "",
-            f"{slice.heading}",
-            "",
-            f"![{'Poses' if path.stem in POSES else 'The map'} of {path.stem}]({picture})",
-            "",
-            *((notes, "") if notes else ()),
-            *((f"Answers to compare with: {source}.", "") if source else ()),
-            "```sh",
-            *commands,
-            "```",
-            "",
-            "```text",
-            table,
-            "```",
-            "",
-            "```yaml",
-            _shortened(text),
-            "```",
-            "",
-        )
+    blocks = (
+        f"## {path.stem}",
+        slice.heading,
+        f"![{shown} of {path.stem}]({picture})",
+        " ".join(yaml.safe_load(text).get("notes", "").split()),
+        f"Answers to compare with: {source}." if source else "",
+        *(
+            f"```{kind}\n{said}\n```"
+            for kind, said in (("sh", commands), ("text", table), ("yaml", _shortened(text)))
+        ),
     )
+    return "\n\n".join(filter(None, blocks)) + "\n"
 
 
 def _shortened(record: str) -> str:
     """The record without comments, notes and reference answers."""
-    lines = record.split("\nreference:", maxsplit=1)[0].splitlines()
-    kept, within = [], False
-    for line in lines:
-        within = line.startswith("notes:") or (within and line.startswith(" "))
-        if not within and not line.startswith("#"):
-            kept.append(line)
-    return "\n".join(kept)
+    before = record.partition("\nreference:")[0]
+    return re.sub(r"^(?:#.*|notes:.*(?:\n .*)*)\n?", "", before, flags=re.MULTILINE).rstrip("\n")

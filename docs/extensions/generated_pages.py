@@ -15,10 +15,8 @@ import schema_tables
 from sphinx.application import Sphinx
 
 ROOT = Path(__file__).resolve().parents[2]
-SCHEMAS = {
-    "record": ("Problem records (YAML)", ROOT / "ptmcad" / "record.schema.json"),
-    "region-map": ("Region maps (JSON)", ROOT / "docs" / "region-map.schema.json"),
-}
+TITLES = {"record": "Problem records (YAML)", "region-map": "Region maps (JSON)"}
+"""Of schemas whose names do not say it all."""
 
 
 def make_pages(app: Sphinx) -> None:
@@ -35,14 +33,16 @@ def make_pages(app: Sphinx) -> None:
 
 
 def schemas() -> dict[str, tuple[str, Path]]:
-    """Page name to title and schema: the two above, and every other schema beside the manual."""
-    found = dict(SCHEMAS)
-    known = {path for _, path in found.values()}
-    for path in sorted((ROOT / "docs").glob("*.schema.json")):
-        if path not in known:
-            name = path.name.removesuffix(".schema.json")
-            found[name] = (f"{name.replace('-', ' ').capitalize()} (JSON)", path)
-    return {f"schema-{name}": entry for name, entry in found.items()}
+    """Page name to title and schema: that of records, and every schema beside the manual."""
+    found = {}
+    for path in (
+        ROOT / "ptmcad/record.schema.json",
+        *sorted((ROOT / "docs").glob("*.schema.json")),
+    ):
+        name = path.name.removesuffix(".schema.json")
+        title = TITLES.get(name, f"{name.replace('-', ' ').capitalize()} (JSON)")
+        found[f"schema-{name}"] = title, path
+    return found
 
 
 def write(path: Path, text: str) -> None:

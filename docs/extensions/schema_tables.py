@@ -47,6 +47,13 @@ _KNOWN = frozenset(
         "dependentRequired",
     ]
 )
+_LIMITS = {
+    "minimum": "from {}",
+    "exclusiveMinimum": "above {}",
+    "maximum": "to {}",
+    "maxLength": "up to {} characters",
+    "pattern": "of the form `{}`",
+}
 
 
 def page(title: str, file: str, schema: Schema) -> str:
@@ -57,65 +64,45 @@ def page(title: str, file: str, schema: Schema) -> str:
     ValueError
         For a keyword that the tables could not show.
     """
-    lines = [
-        f"# {title}",
-        "",
-        str(schema.get("description", "")),
-        "",
-        f"The schema itself: [{file}]({file}).",
-        "",
-    ]
-    lines += _object("", "The whole", schema)
-    for name, definition in schema.get("$defs", {}).items():
-        lines += [f"## {name}", "", *_definition(definition)]
-    return "\n".join(lines).rstrip() + "\n"
+    blocks = [f"# {title}", _meaning(schema), f"The schema itself: [{file}]({file})."]
+    for name, part in {"The whole": schema, **schema.get("$defs", {})}.items():
+        blocks.append(f"## {name}")
+        if "properties" not in part:
+            blocks.append(" - ".join(filter(None, (_type(part), _meaning(part)))))
+        for place, own in _objects("", part):
+            blocks += [f"## `{place[1:]}`"] * bool(place) + [_table(own)]
+    return "\n\n".join(blocks) + "\n"
 
 
-def _definition(schema: Schema) -> Iterator[str]:
-    if "properties" in schema:
-        yield from _table(schema)
-        yield from _inner(schema, "")
-    else:
-        yield f"{_type(schema)}{_dash(schema)}"
-        yield ""
-
-
-def _object(path: str, heading: str, schema: Schema) -> Iterator[str]:
-    """The table of an object and, after it, those of the objects inside."""
-    yield f"## {heading}"
-    yield ""
-    yield from _table(schema)
-    yield from _inner(schema, path)
-
-
-def _inner(schema: Schema, path: str) -> Iterator[str]:
-    for key, value in schema.get("properties", {}).items():
-        yield from _below(f"{path}.{key}" if path else key, value)
-
-
-def _below(place: str, schema: Schema) -> Iterator[str]:
-    """The objects in a value: in the entries of a list or mapping, or in one of several shapes that
-    it may have.
+def _objects(place: str, schema: Schema) -> Iterator[tuple[str, Schema]]:
+    """The objects in a value with their places: it may be one, and they may be in the entries of a
+    list or mapping, or in one of several shapes that it may have.
     """
     if "properties" in schema:
-        yield from _object(place, f"`{place}`", schema)
-        return
-    for keyword, end in (("items", "[]"), ("additionalProperties", ".*")):
-        if isinstance(schema.get(keyword), Mapping):
-            yield from _below(place + end, schema[keyword])
-    for part in (*schema.get("anyOf", ()), *schema.get("oneOf", ())):
-        yield from _below(place, part)
+        yield place, schema
+    parts = {f"{place}.{key}": [part] for key, part in schema.get("properties", {}).items()}
+    parts |= {
+        f"{place}[]": [schema.get("items")],
+        f"{place}.*": [schema.get("additionalProperties")],
+    }
+    parts[place] = [*schema.get("anyOf", ()), *schema.get("oneOf", ())]
+    for at, shapes in parts.items():
+        for shape in shapes:
+            if isinstance(shape, Mapping):
+                yield from _objects(at, shape)
 
 
-def _table(schema: Schema) -> Iterator[str]:
+def _table(schema: Schema) -> str:
     _check(schema)
-    required = set(schema.get("required", ()))
-    yield "| key | value | meaning |"
-    yield "|---|---|---|"
-    for key, value in schema.get("properties", {}).items():
-        must = "" if key in required else " (optional)" if required else ""
-        yield f"| `{key}`{must} | {_cell(_type(value))} | {_cell(_meaning(value))} |"
-    yield ""
+    required = schema.get("required", ())
+    lines = ["| key | value | meaning |", "|---|---|---|"]
+    for key, value in schema["properties"].items():
+        must = "" if key in required or not required else " (optional)"
+        cells = (
+            " ".join(text.split()).replace("|", r"\|") for text in (_type(value), _meaning(value))
+        )
+        lines.append(f"| `{key}`{must} | {' | '.join(cells)} |")
+    return "\n".join(lines)
 
 
 def _meaning(schema: Schema) -> str:
@@ -135,56 +122,26 @@ def _type(schema: Schema) -> str:
         return f"`{schema['const']}`"
     if "enum" in schema:
         return ", ".join(f"`{value}`" for value in schema["enum"])
-    for keyword in ("anyOf", "oneOf"):
-        if keyword in schema:
-            return " or ".join(_type(part) for part in schema[keyword])
+    if shapes := schema.get("anyOf", schema.get("oneOf")):
+        return " or ".join(map(_type, shapes))
     kinds = schema.get("type", "any")
-    text = (" or ".join(kinds) if isinstance(kinds, list) else str(kinds)) + _bounds(schema)
-    if "array" in kinds:
-        text += _items(schema)
-    if (
-        "object" in kinds
-        and isinstance(schema.get("additionalProperties"), Mapping)
-        and "properties" not in schema
-    ):
-        text += f", each value {_type(schema['additionalProperties'])}"
-    return text
-
-
-def _items(schema: Schema) -> str:
-    if "prefixItems" in schema:
-        return " of " + ", ".join(_type(part) for part in schema["prefixItems"])
-    return f" of {_type(schema['items'])}" if isinstance(schema.get("items"), Mapping) else ""
-
-
-_LIMITS = {
-    "minimum": "from {}",
-    "exclusiveMinimum": "above {}",
-    "maximum": "to {}",
-    "maxLength": "up to {} characters",
-    "pattern": "of the form `{}`",
-}
-
-
-def _bounds(schema: Schema) -> str:
-    low = schema.get("minItems", schema.get("minProperties"))
-    high = schema.get("maxItems", schema.get("maxProperties"))
-    notes = []
-    if low is not None:
-        notes.append(f"{low} entries" if low == high else f"at least {low}")
-    notes += [
+    text = kinds if isinstance(kinds, str) else " or ".join(kinds)
+    low, high = (
+        schema.get(f"{end}Items", schema.get(f"{end}Properties")) for end in ("min", "max")
+    )
+    notes = [
         words.format(schema[keyword]) for keyword, words in _LIMITS.items() if keyword in schema
     ]
-    return f" ({', '.join(notes)})" if notes else ""
-
-
-def _dash(schema: Schema) -> str:
-    return f" - {_meaning(schema)}" if _meaning(schema) else ""
-
-
-def _cell(text: str) -> str:
-    """Text in a table's cell: no line breaks, and no bar that would end the cell."""
-    return " ".join(text.split()).replace("|", r"\|")
+    if low is not None:
+        notes.insert(0, f"{low} entries" if low == high else f"at least {low}")
+    if notes:
+        text += f" ({', '.join(notes)})"
+    parts = [p for p in schema.get("prefixItems", [schema.get("items")]) if isinstance(p, Mapping)]
+    if parts:
+        text += f" of {', '.join(map(_type, parts))}"
+    if isinstance(schema.get("additionalProperties"), Mapping) and "properties" not in schema:
+        text += f", each value {_type(schema['additionalProperties'])}"
+    return text
 
 
 def _check(schema: Schema) -> None:

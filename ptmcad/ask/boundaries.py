@@ -21,8 +21,7 @@ from ptmcad.answer.regionmap import RegionMap
 from ptmcad.ask.location import component_cells
 from ptmcad.cover.complement import outlines
 from ptmcad.errors import ConfigError
-from ptmcad.exact.boundaries.polyline import WallPolyline, chains, critical_shares
-from ptmcad.exact.cad.projection import lines_of
+from ptmcad.exact.boundaries.polyline import WallPolyline, chains, critical_shares, lines_across
 from ptmcad.question.slice import within_doubles
 from ptmcad.text.parsing import share_for
 
@@ -119,30 +118,22 @@ def _continues(left: _Polyline, right: _Polyline) -> bool:
 
 def _lines(result: RegionMap, chained: tuple[tuple[WallPolyline, ...], ...]) -> Iterator[_Polyline]:
     """Lines across the base, from wall to wall."""
-    lines = lines_of(result.components, result.base)
     spans = critical_shares(result)
-    for component, polynomial in lines.items():
-        own = [int(c) for c in polynomial.coeffs()]
-        for k, value in enumerate(result.critical_values):
-            if list(value.polynomial) not in (own, [-c for c in own]):
-                continue
-            at, radius = (spans[k][0] + spans[k][1]) / 2, (spans[k][1] - spans[k][0]) / 2
-            ends = [c.points[-1][1] for c in chained[k]], [c.points[0][1] for c in chained[k + 1]]
-            cells = [[result.cells[n].region for n in result.stacks[k + j].cells] for j in (0, 1)]
-            walls = [
-                (h, c.distance)
-                for j in (0, 1)
-                for h, c in zip(ends[j], chained[k + j], strict=True)
-            ]
-            for low, high in pairwise(_apart(walls)):
-                middle = (low + high) / 2
-                sides = [
-                    own[sum(h < middle for h in heights)]
-                    for own, heights in zip(cells, ends, strict=True)
-                ]
-                yield _Polyline(
-                    ((at, low), (at, high)), component, (sides[0], sides[1]), radius, across=True
-                )
+    for component, k in lines_across(result):
+        at, radius = (spans[k][0] + spans[k][1]) / 2, (spans[k][1] - spans[k][0]) / 2
+        ends = [c.points[-1][1] for c in chained[k]], [c.points[0][1] for c in chained[k + 1]]
+        cells = [[result.cells[n].region for n in result.stacks[k + j].cells] for j in (0, 1)]
+        walls = [
+            (h, c.distance) for j in (0, 1) for h, c in zip(ends[j], chained[k + j], strict=True)
+        ]
+        for low, high in pairwise(_apart(walls)):
+            middle = (low + high) / 2
+            left, right = (
+                own[sum(h < middle for h in heights)]
+                for own, heights in zip(cells, ends, strict=True)
+            )
+            points = ((at, low), (at, high))
+            yield _Polyline(points, component, (left, right), radius, across=True)
 
 
 def _apart(walls: list[tuple[Fraction, Fraction]]) -> list[Fraction]:
@@ -187,10 +178,9 @@ def _upper(value: Fraction) -> float:
 def _outlines(result: RegionMap) -> Iterator[Boundary]:
     """The outlines of a certified map's cells."""
     complement, cells = component_cells(result)
-    numbers = [n for n in cells if n is not None]
     scale = [(a.width / complement.cover.steps, a.low) for a in result.slice.axes]
-    for number, polygons in zip(numbers, outlines(complement, numbers), strict=True):
-        region = result.cells[cells[number]].region
+    for number, polygons in zip(cells.values(), outlines(complement, list(cells)), strict=True):
+        region = result.cells[number].region
         for corners in polygons:
             closed = np.concatenate([corners, corners[:1]])
             points = [

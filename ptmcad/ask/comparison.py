@@ -27,7 +27,7 @@ from ptmcad.cover import components
 from ptmcad.cover.complement import Components, samples
 from ptmcad.cover.rectangles import Cover
 from ptmcad.cover.subdivision import FREE
-from ptmcad.errors import A_MAP, ConfigError, expect
+from ptmcad.errors import A_MAP, ConfigError, blamed, expect
 from ptmcad.exact.areas.area import region_areas
 from ptmcad.exact.areas.regionareas import region_stacks
 from ptmcad.exact.cad.decomposition import cut_along, members, seen_from
@@ -154,9 +154,8 @@ def _of_each(maps: _Maps, answer: Callable[[RegionMap], _Answer]) -> list[_Answe
     found = []
     for which, result in zip(("first", "second"), maps, strict=True):
         try:
-            found.append(answer(result))
-        except ConfigError as error:
-            raise ConfigError(error.message, key=which) from error
+            with blamed(which):
+                found.append(answer(result))
         except (ValueError, IndexError, ArithmeticError) as error:
             reason = f"the map contradicts itself ({error}); check it with ptmcad verify"
             raise ConfigError(reason, key=which) from error
@@ -217,9 +216,7 @@ def _side(result: RegionMap) -> _Side:
         When it contradicts itself.
     """
     complement, cells = component_cells(result)
-    region_of = {
-        place: result.cells[cell].region for place, cell in cells.items() if place is not None
-    }
+    region_of = {place: result.cells[cell].region for place, cell in cells.items()}
     if not all(region < len(result.regions) for region in region_of.values()):
         raise ConfigError(
             "the map contradicts itself (a cell is in no region); check it with ptmcad verify"

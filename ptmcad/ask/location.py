@@ -7,10 +7,9 @@ certified map from its cover, in integers.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from fractions import Fraction
-from functools import wraps
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import TYPE_CHECKING, Any
 
 from flint import fmpq
 
@@ -25,9 +24,9 @@ from ptmcad.algebra.real_roots import (
 )
 from ptmcad.answer.consistency import contradiction
 from ptmcad.answer.regionmap import Component, Kind, Location, RegionMap, Status
+from ptmcad.answer.remembered import remembered
 from ptmcad.answer.words import noun
 from ptmcad.cover import components
-from ptmcad.cover.rectangles import Cover
 from ptmcad.errors import ConfigError, DegenerateSliceError, expect
 from ptmcad.exact.cad.projection import FibredCurve, curves_of
 from ptmcad.exact.cad.stacks import level_at
@@ -171,29 +170,9 @@ _KEPT = 4
 """Maps of which what locates points is kept for the next one: many points may be asked of some maps
 in turn.
 """
-Made = TypeVar("Made")
 
 
-def _kept(make: Callable[[RegionMap], Made]) -> Callable[[RegionMap], Made]:
-    """A function of a map that keeps the latest answers, by identity: to compare whole maps would
-    take longer.
-    """
-    latest: list[tuple[RegionMap, Made]] = []
-
-    @wraps(make)
-    def known(result: RegionMap) -> Made:
-        for k, (other, made) in enumerate(latest):
-            if other is result:
-                latest.append(latest.pop(k))
-                return made
-        made = make(result)
-        latest[:] = [*latest[1 - _KEPT :], (result, made)]
-        return made
-
-    return known
-
-
-@_kept
+@remembered(_KEPT)
 def _curves(result: RegionMap) -> list[FibredCurve]:
     """The curves over the map's base."""
     return curves_of(result.components, result.base)
@@ -201,25 +180,22 @@ def _curves(result: RegionMap) -> list[FibredCurve]:
 
 def _locate_outside_cover(result: RegionMap, point: Sequence[Fraction]) -> Location:
     complement, cells = component_cells(result)
-    number = cells.get(complement.locate(*_in_steps(result, complement.cover, point)))
-    if number is None:
+    u, v = (
+        axis.share(x) * complement.cover.steps
+        for axis, x in zip(result.slice.axes, point, strict=True)
+    )
+    component = complement.locate(u, v)
+    if component not in cells:
         return Location(Status.UNDECIDED)
+    number = cells[component]
     cell = result.cells[number]
     return Location(
         Status.CERTIFIED, cell.region, number, cell.total, cell.stable, cell.index, cell.further
     )
 
 
-def _in_steps(
-    result: RegionMap, cover: Cover, point: Sequence[Fraction]
-) -> tuple[Fraction, Fraction]:
-    """Lattice coordinates."""
-    u, v = (a.share(x) * cover.steps for a, x in zip(result.slice.axes, point, strict=True))
-    return u, v
-
-
-@_kept
-def component_cells(result: RegionMap) -> tuple[Components, dict[int | None, int]]:
+@remembered(_KEPT)
+def component_cells(result: RegionMap) -> tuple[Components, dict[int, int]]:
     """The components outside a certified map's cover, and which cell each of them is.
 
     Raises
@@ -229,18 +205,11 @@ def component_cells(result: RegionMap) -> tuple[Components, dict[int | None, int
     """
     assert result.cover is not None
     complement = components(result.cover)
-    cells: dict[int | None, int] = {}
-    for number, cell in enumerate(result.cells):
-        try:
-            place = complement.locate(*_in_steps(result, complement.cover, tuple(cell.sample)))
-        except ValueError as error:
-            raise contradiction(f"the sample of cell {number} is not in the window") from error
-        if place is None or place in cells:
-            raise contradiction(
-                f"the sample of cell {number} is in the cover or in the component of another cell"
-            )
-        cells[place] = number
-    return complement, cells
+    x, y = ((axis.low, axis.high) for axis in result.slice.axes)
+    try:
+        return complement, complement.numbered((cell.sample for cell in result.cells), (x, y))
+    except ValueError as error:
+        raise contradiction(f"of the cells, {error}") from error
 
 
 def _point(result: RegionMap, at: Mapping[str, Any]) -> tuple[Fraction, Fraction]:

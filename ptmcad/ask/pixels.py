@@ -18,7 +18,6 @@ from ptmcad.algebra.real_roots import RealRoot, order, sign_at
 from ptmcad.answer.boundaries import NONE, Grid
 from ptmcad.answer.regionmap import RegionMap
 from ptmcad.ask.location import component_cells, locate, stack_over
-from ptmcad.cover.subdivision import FREE
 from ptmcad.errors import ConfigError
 from ptmcad.exact.cad.projection import by_component, curves_of, lines_of
 from ptmcad.question.slice import within_doubles
@@ -117,21 +116,14 @@ def _below(root: RealRoot, heights: list[fmpq]) -> tuple[int, bool]:
 def _certified(result: RegionMap, centres: list[list[Fraction]]) -> Labels:
     complement, cells = component_cells(result)
     number_of = np.full(len(complement.areas) + 1, NONE, dtype=np.int64)
-    for component, cell in cells.items():
-        if component is not None:
-            number_of[component] = cell
+    number_of[list(cells)] = list(cells.values())
     places = [
         [axis.share(v) * complement.cover.steps for v in values]
         for axis, values in zip(result.slice.axes, centres, strict=True)
     ]
-    tree = complement.subdivision
-    whole = [np.array([int(p) for p in values], dtype=np.int64) for values in places]
     columns, rows = (len(values) for values in places)
-    leaf = tree.leaves_right_above(np.tile(whole[0], rows), np.repeat(whole[1], columns))
-    labels = np.full(len(leaf), NONE, dtype=np.int64)
-    free = tree.state[leaf] == FREE
-    labels[free] = number_of[complement.owner[leaf[free]]]
-    image = labels.reshape(rows, columns)
+    whole = (np.array([int(p) for p in values], dtype=np.int64) for values in places)
+    image: Labels = number_of[complement.raster(*whole)]
     # a centre on a line of the lattice may touch a closed rectangle at its left or below
     on_line = [{k for k, p in enumerate(values) if p.denominator == 1} for values in places]
     unsure = {

@@ -15,13 +15,13 @@ from ptmcad.answer.motion import Fall, Motion
 from ptmcad.answer.words import assignments
 from ptmcad.cli.commonoptions import (
     Formats,
-    ResourceLimits,
     format_option,
     gathered,
-    held,
     limit_options,
     name_option,
+    option,
     out_option,
+    report_deadline,
 )
 from ptmcad.cli.drawing import picture, report_written, style_of
 from ptmcad.cli.progress import ProgressBar
@@ -31,7 +31,7 @@ from ptmcad.errors import ConfigError
 from ptmcad.extras import require_ffmpeg
 from ptmcad.options import Options
 from ptmcad.process.output import check_writable, write_files
-from ptmcad.question.config import file_name, slice_from_typed
+from ptmcad.question.config import slice_from_typed
 from ptmcad.question.config.typed import Typed
 from ptmcad.question.shipped import FIRST, SECOND
 from ptmcad.show import render
@@ -45,32 +45,30 @@ MAX_FPS = 60
 
 @click.command("animate")
 @slice_options
-@click.option("--path", required=True, metavar="NAME=FROM:TO,NAME=VALUE",
-              help="Where the point of the map goes: for each axis one value, or one for each corner, as in "
-                   f"{SECOND}=3/4:6/5:3/4,{FIRST}=3/2.")  # fmt: skip
-@click.option("--pose", default="stable:1", show_default=True, metavar="KIND:N",
-              help="Which pose is followed, as `ptmcad map` numbers them, at the path's start.")  # fmt: skip
-@click.option("--frames", type=click.IntRange(2, 600), default=90, show_default=True,
-              help="Pictures along the path; each fall has a third of that in addition.")  # fmt: skip
-@click.option(
-    "--fps",
-    type=click.IntRange(1, MAX_FPS),
-    default=20,
-    show_default=True,
-    help="Pictures in a second.",
+@option(
+    "--path",
+    "Where the point of the map goes: for each axis one value, or one for each corner, as in "
+    f"{SECOND}=3/4:6/5:3/4,{FIRST}=3/2.",
+    "NAME=FROM:TO,NAME=VALUE",
+    required=True,
 )
-@click.option("--size", metavar="WxH", help="Of the film, as 9x5in.  [default: 9x5.1in]")
-@click.option(
-    "--dpi",
-    type=click.IntRange(50, 400),
-    default=100,
-    show_default=True,
-    help="Pixels to the inch.",
+@option(
+    "--pose",
+    "Which pose is followed, as `ptmcad map` numbers them, at the path's start.",
+    "KIND:N",
+    default="stable:1",
 )
-@click.option(
-    "--palette", metavar="NAME|COLOUR,..", help="As of `ptmcad plot`.  [default: default]"
+@option(
+    "--frames",
+    "Pictures along the path; each fall has a third of that in addition.",
+    type=click.IntRange(2, 600),
+    default=90,
 )
-@click.option("--title", metavar="TEXT", help="Title, '' for none.  [default: the slice's heading]")
+@option("--fps", "Pictures in a second.", type=click.IntRange(1, MAX_FPS), default=20)
+@option("--size", "Of the film, as 9x5in.  [default: 9x5.1in]", "WxH")
+@option("--dpi", "Pixels to the inch.", type=click.IntRange(50, 400), default=100)
+@option("--palette", "As of `ptmcad plot`.  [default: default]", "NAME|COLOUR,..")
+@option("--title", "Title, '' for none.  [default: the slice's heading]", "TEXT")
 @tolerance_option
 @out_option
 @name_option("NAME-motion")
@@ -79,7 +77,7 @@ MAX_FPS = 60
 @gathered(style=(("size", "palette", "title"), partial(style_of, style="default")))
 def command(
     *, asked: Typed, path: str, pose: str, frames: int, fps: int, style: PictureStyle, dpi: int,
-    tolerance: Fraction, out: Path, name: str | None, formats: Formats, limits: ResourceLimits,
+    tolerance: Fraction, out: Path, name: str | None, formats: Formats, timeout: float | None,
 ) -> None:  # fmt: skip
     """Show the mechanism moving along a path of parameters, and where it snaps.
 
@@ -95,14 +93,15 @@ def command(
     """
     if "mp4" in formats:
         require_ffmpeg()  # where it is missing, that is said before anything is computed
-    with held(limits), ProgressBar() as progress:
-        options = Options(areas=False, progress=progress, timeout=limits.timeout)
+    report_deadline(timeout)
+    with ProgressBar() as progress:
+        options = Options(areas=False, progress=progress, timeout=timeout)
         stored = stored_map(asked)
         slice = stored.slice if stored else slice_from_typed(asked)
         if slice.model.drawable is None:
             raise ConfigError(no_drawing(slice.model))
         result = stored or made_map(slice, options, tolerance)
-        stem = f"{slice.name}-motion" if name is None else file_name(name, "--name")
+        stem = name or f"{slice.name}-motion"
         names = tuple(f"{stem}.{kind}" for kind in formats)
         check_writable(out, names)
         from ptmcad.workbench.fields.posemotion import motion_of

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import click
 
-from ptmcad.cli.commonoptions import PATH, out_option, reading, seconds_of
+from ptmcad.cli.commonoptions import PATH, option, out_option, seconds_of
 from ptmcad.cli.completion import files
 from ptmcad.cli.drawing import report_written
 from ptmcad.cli.progress import ProgressBar
@@ -27,22 +27,39 @@ DEFAULT = "fig4"
 @click.argument(
     "configs", nargs=-1, type=PATH, shell_complete=files(".yaml", ".yml"), metavar="[CONFIG]..."
 )
-@click.option("--compare", nargs=2, type=PATH, metavar="OLD NEW",
-              help="Compare two JSON files of earlier runs; measure nothing.")  # fmt: skip
-@out_option
-@click.option("--method", "methods", multiple=True, type=click.Choice(METHODS), metavar="NAME",
-              help=f"Measure this method only, of {', '.join(METHODS)}; may be repeated.  "
-                   "[default: all that are installed]")  # fmt: skip
-@click.option("--rounds", type=click.IntRange(1, 1000), default=3, show_default=True,
-              help="Runs of each job that takes less than 2 seconds; others are run once.")  # fmt: skip
-@click.option("--seed", type=click.IntRange(0, 2**31), default=1, show_default=True,
-              help="Of the order of the methods.")  # fmt: skip
-@click.option("--time-limit", type=float, default=60.0, show_default=True, callback=reading(seconds_of), metavar="S",
-              help="Seconds for each method on each slice; what does not fit is left out, and reported.")  # fmt: skip
-@click.option("--quick", is_flag=True, help="Fewer and coarser settings.")
-@click.option(
-    "--page", is_flag=True, help="Write error-time.md too, a page of all studies in the folder."
+@option(
+    "--compare",
+    "Compare two JSON files of earlier runs; measure nothing.",
+    "OLD NEW",
+    PATH,
+    nargs=2,
 )
+@out_option
+@option(
+    "--method methods",
+    f"Measure this method only, of {', '.join(METHODS)}; may be repeated.  "
+    "[default: all that are installed]",
+    "NAME",
+    click.Choice(METHODS),
+    multiple=True,
+)
+@option(
+    "--rounds",
+    "Runs of each job that takes less than 2 seconds; others are run once.",
+    type=click.IntRange(1, 1000),
+    default=3,
+)
+@option("--seed", "Of the order of the methods.", type=click.IntRange(0, 2**31), default=1)
+@option(
+    "--time-limit",
+    "Seconds for each method on each slice; what does not fit is left out, and reported.",
+    "S",
+    float,
+    read=seconds_of,
+    default=60.0,
+)
+@option("--quick", "Fewer and coarser settings.")
+@option("--page", "Write error-time.md too, a page of all studies in the folder.")
 def command(
     *,
     configs: tuple[Path, ...],

@@ -7,9 +7,7 @@ from pathlib import Path
 import click
 
 from ptmcad.cli.commonoptions import (
-    ResourceLimits,
     clock_stopped,
-    held,
     limit_options,
     record_argument,
 )
@@ -30,7 +28,7 @@ from ptmcad.text.numerals import shortest_text
 @click.command("check")
 @record_argument("record", required=True)
 @limit_options
-def command(*, record: Path, limits: ResourceLimits) -> int:
+def command(*, record: Path, timeout: float | None) -> int:
     """Say everything that is wrong with a problem record (a file, or the name of a shipped one), or what it asks.
 
     Prints each fault on a line of its own, with file, line and key, and ends with exit status 2. Of a record without
@@ -50,42 +48,36 @@ def command(*, record: Path, limits: ResourceLimits) -> int:
         if len(error.faults) >= MAX_FAULTS:
             click.echo("after so many faults no more were looked for", err=True)
         return 2
-    with held(limits):
-        with clock_stopped(
-            limits.timeout
-        ):  # the time that the import takes is not the computation's
-            from ptmcad.ask.checking import asked_text, check, cost_text
-        slice = (
-            asked.member(asked.values[len(asked.values) // 2])
-            if isinstance(asked, Family)
-            else asked
+    with clock_stopped(timeout):  # the time that the import takes is not the computation's
+        from ptmcad.ask.checking import asked_text, check, cost_text
+    slice = (
+        asked.member(asked.values[len(asked.values) // 2]) if isinstance(asked, Family) else asked
+    )
+    for line in asked_text(slice):  # whatever stops the rest, this is known
+        click.echo(line)
+    try:
+        with ProgressBar():
+            found = check(slice)
+    except (ConfigError, HypothesisError) as error:
+        raise with_place(error, record_of(record_tree(record))) from error
+    for line in cost_text(found):
+        click.echo(line)
+    if isinstance(asked, Family):
+        click.echo(f"{'family':<12}of {len(asked.values)} such slices, {asked.free.name} from {asked.free.low} to "
+                   f"{asked.free.high}; above is the one in the middle")  # fmt: skip
+    if designed is not None:
+        over = ", ".join(
+            f"{a.name} in [{shortest_text(a.low)}, {shortest_text(a.high)}]" for a in designed.over
         )
-        for line in asked_text(slice):  # whatever stops the rest, this is known
-            click.echo(line)
-        try:
-            with ProgressBar():
-                found = check(slice)
-        except (ConfigError, HypothesisError) as error:
-            raise with_place(error, record_of(record_tree(record))) from error
-        for line in cost_text(found):
-            click.echo(line)
-        if isinstance(asked, Family):
-            click.echo(f"{'family':<12}of {len(asked.values)} such slices, {asked.free.name} from {asked.free.low} to "
-                       f"{asked.free.high}; above is the one in the middle")  # fmt: skip
-        if designed is not None:
-            over = ", ".join(
-                f"{a.name} in [{shortest_text(a.low)}, {shortest_text(a.high)}]"
-                for a in designed.over
-            )
-            of = f" of {designed.along}" if designed.along else ""
-            click.echo(
-                f"{'design':<12}{designed.maximise}{of} over {over}; above is the record without it"
-            )
-        if sweeping is not None:
-            from ptmcad.workbench.sweeps.run import sweep_text
+        of = f" of {designed.along}" if designed.along else ""
+        click.echo(
+            f"{'design':<12}{designed.maximise}{of} over {over}; above is the record without it"
+        )
+    if sweeping is not None:
+        from ptmcad.workbench.sweeps.run import sweep_text
 
-            for line in sweep_text(sweeping, found):
-                click.echo(line)
+        for line in sweep_text(sweeping, found):
+            click.echo(line)
     return 0
 
 

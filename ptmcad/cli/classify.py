@@ -15,15 +15,14 @@ from ptmcad.answer.regionmap import with_compilation
 from ptmcad.answer.words import several
 from ptmcad.cli.commonoptions import (
     Idle,
-    ResourceLimits,
     clock_stopped,
     file_option,
     gathered,
-    held,
     idle_drawing,
     limit_options,
+    option,
     out_option,
-    reading,
+    report_deadline,
     report_idle,
 )
 from ptmcad.cli.drawing import (
@@ -34,7 +33,6 @@ from ptmcad.cli.drawing import (
     drawing_options,
     names_of,
     report_written,
-    share_of,
     write_result,
 )
 from ptmcad.cli.progress import ProgressBar
@@ -57,6 +55,7 @@ from ptmcad.question.counts import Count
 from ptmcad.question.savings import check_names, switched_off
 from ptmcad.question.slice import Slice
 from ptmcad.text.numerals import percent
+from ptmcad.text.parsing import share_for
 
 FORMATS = ("json", *PICTURES, *DATA, *MESHES)
 MIN_SECONDS = 0.01
@@ -98,9 +97,8 @@ def classify_to_files(slice: Slice, options: Options, output: Output, spent: flo
 
     with ProgressBar() as progress:
         options = replace(options, progress=progress, partial=handed_over if watched() else None)
-        with clock_stopped(
-            options.timeout, spent
-        ):  # the time that the import takes is not the computation's
+        # the time that the import takes is not the computation's
+        with clock_stopped(options.timeout, spent):
             from ptmcad.ask.classification import prepare, region_map
 
             _report_why_none(
@@ -145,10 +143,7 @@ def _hand_over(result: Any, name: str, output: Output) -> str:
     text = output.text(result)
     if "json" in output.formats:
         state = "partial" if result.status.value == "partial" else "complete"
-        place, beside = (
-            str(output.out / f"{name}.json"),
-            names_of(name, output.drawn),
-        )
+        place, beside = str(output.out / f"{name}.json"), names_of(name, output.drawn)
         send(Topic.RESULT, state, text, _open_share(result), place, *beside)
     return text
 
@@ -163,12 +158,7 @@ def _save(result: Any, name: str, output: Output) -> None:
     # first: drawing may take longer than there is time
     file = f"{name}.json" if "json" in output.formats else ""
     text = _hand_over(result, name, output) if file else ""
-    write_result(
-        output.out,
-        output.drawing.writers(result, name, output.drawn),
-        file,
-        text,
-    )
+    write_result(output.out, output.drawing.writers(result, name, output.drawn), file, text)
 
 
 def explanation(steps: Iterable[Any]) -> str:
@@ -278,12 +268,7 @@ def _going_on(
 
 
 def _classify_family(
-    family: Family,
-    third: Third,
-    options: Options,
-    output: Output,
-    limits: ResourceLimits,
-    resume: Path | None,
+    family: Family, third: Third, options: Options, output: Output, resume: Path | None
 ) -> None:
     """Classify and draw the members of a family."""
     # with what stores and draws families, which a slice does without
@@ -296,12 +281,11 @@ def _classify_family(
              "no picture and no mesh is written, see --format"),
         *idle_drawing(output.formats),
     ))  # fmt: skip
-    with held(limits):
-        result, surface = family_to_files(family, options, output, third)
+    result, surface = family_to_files(family, options, output, third)
     click.echo(f"{question_in(family.record, family.name)}\n{result.table()}")
     if surface is not None:
         click.echo(f"boundary surface: {surface.words()}")
-    report_written(output.out, names_of_family(family.name, output))
+    report_written(output.out, names_of_family(family.name, output.formats))
     single = [kind for kind in output.formats if kind not in (*PICTURES, *MESHES)]
     files = sum(len(names_of("", (kind,))) for kind in single) * len(result.values)
     if files:
@@ -313,68 +297,40 @@ def _classify_family(
 
 @click.command("classify")
 @slice_options
-@click.option("--free", multiple=True, callback=reading(_one), metavar="NAME=LO:HI",
-              help="A third parameter: a map for each member of a family.")  # fmt: skip
-@click.option("--members", metavar="VALUE,..|N|between",
-              help="Values of the free parameter, how many, or one between each two neighbouring changes.  "
-                   "[default: the record's, or 9]")  # fmt: skip
-@click.option(
+@option("--free", "A third parameter: a map for each member of a family.", "NAME=LO:HI",
+        read=_one, multiple=True)  # fmt: skip
+@option("--members", "Values of the free parameter, how many, or one between each two neighbouring changes.  "
+        "[default: the record's, or 9]", "VALUE,..|N|between")  # fmt: skip
+@option(
     "--changes",
-    is_flag=True,
-    help="Find the values of the free parameter at which regions appear, split, join, reach a side or vanish.",
+    "Find the values of the free parameter at which regions appear, split, join, reach a side or vanish.",
 )
-@click.option(
+@option(
     "--surface",
-    is_flag=True,
-    help="Draw NAME-3d as the surface between regions of different counts, with --changes so that it bridges none.",
+    "Draw NAME-3d as the surface between regions of different counts, with --changes so that it bridges none.",
 )
-@click.option(
-    "--count", type=click.Choice([c.value for c in Count]), help="What distinguishes two regions."
-)
+@option("--count", "What distinguishes two regions.", type=click.Choice([c.value for c in Count]))
 @engine_option
 @out_option
-@click.option("--explain", is_flag=True, help="Print what is computed, what is left out, and why.")
-@click.option(
-    "--without", multiple=True, callback=reading(_names_of_savings), hidden=True
-)  # for the ablation study
-@click.option(
-    "--keep", multiple=True, callback=reading(_names_of_savings), hidden=True
-)  # the older name of --without
-@click.option(
-    "--jobs",
-    type=click.IntRange(min=1),
-    metavar="N",
-    help="Number of threads of the certified engine.  [default: all processors]",
-)
+@option("--explain", "Print what is computed, what is left out, and why.")
+@option("--without", "For the ablation study.", "NAME",
+        read=_names_of_savings, multiple=True, hidden=True)  # fmt: skip
+@option("--keep", "The older name of --without.", "NAME",
+        read=_names_of_savings, multiple=True, hidden=True)  # fmt: skip
+@option("--jobs", "Number of threads of the certified engine.  [default: all processors]", "N",
+        click.IntRange(min=1))  # fmt: skip
 @limit_options
-@click.option(
-    "--tolerance",
-    callback=share_of,
-    metavar="EPS",
-    help="Stop when this share of the window is undetermined (certified engine); with --changes, the width of "
-    "enclosures as a share of the range.",
-)
+@option("--tolerance", "Stop when this share of the window is undetermined (certified engine); with --changes, the "
+        "width of enclosures as a share of the range.", "EPS", read=share_for)  # fmt: skip
 @file_option("--resume", ".json", "RESULT", "Go on from a stored certified map of the same slice.")
-@click.option(
-    "--area-tolerance",
-    callback=share_of,
-    metavar="EPS",
-    help="Relative width of the areas' bounds (exact engine).",
-)
-@click.option(
-    "--no-areas",
-    is_flag=True,
-    help="Leave the regions' areas out, often half of the work (exact engine).",
-)
-@click.option(
-    "--no-timings",
-    is_flag=True,
-    help="Leave run times out of the JSON, so that it is the same every time.",
-)
+@option("--area-tolerance", "Relative width of the areas' bounds (exact engine).", "EPS",
+        read=share_for)  # fmt: skip
+@option("--no-areas", "Leave the regions' areas out, often half of the work (exact engine).")
+@option("--no-timings", "Leave run times out of the JSON, so that it is the same every time.")
 @drawing_options(FORMATS, "json,png,svg", "Files to write")
 @gathered(options=(ENGINE, _wanted), output=Output, third=Third)
 def command(
-    *, asked: Typed, third: Third, count: str | None, options: Options, output: Output, limits: ResourceLimits,
+    *, asked: Typed, third: Third, count: str | None, options: Options, output: Output, timeout: float | None,
     resume: Path | None,
 ) -> None:  # fmt: skip
     """Map the regions of a slice by their number of equilibria.
@@ -406,9 +362,10 @@ def command(
         ptmcad classify free02 --tolerance 1/50
     """
     slice = question_asked(asked, count, third)
-    options = replace(options, timeout=limits.timeout)
+    options = replace(options, timeout=timeout)
+    report_deadline(timeout)
     if isinstance(slice, Family):
-        _classify_family(slice, third, options, output, limits, resume)
+        _classify_family(slice, third, options, output, resume)
         return
     if meshes := output.among(MESHES):
         raise ConfigError(
@@ -421,13 +378,12 @@ def command(
         ("surface", third.surface, "no parameter is free: add --free NAME=LO:HI"),
         *idle_drawing(output.formats),
     ))  # fmt: skip
-    with held(limits):
-        options, spent = _going_on(slice, options, output, resume)
-        if output.explain:
-            click.echo(question_of(slice))
-        steps = announced(slice, options) if output.explain else ()
-        warn(slice, options)
-        result = classify_to_files(slice, options, output, spent)
+    options, spent = _going_on(slice, options, output, resume)
+    if output.explain:
+        click.echo(question_of(slice))
+    steps = announced(slice, options) if output.explain else ()
+    warn(slice, options)
+    result = classify_to_files(slice, options, output, spent)
     further = [step for step in own_steps(result.plan) if step not in steps]
     if output.explain and further:
         click.echo(f"decided on the way:\n{explanation(further)}")

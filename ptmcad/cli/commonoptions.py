@@ -16,12 +16,12 @@ import math
 import os
 import re
 import time
-from collections.abc import Callable, Collection, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager, nullcontext
 from fractions import Fraction
 from functools import wraps
 from pathlib import Path
-from typing import Any, NamedTuple, TypeVar
+from typing import Any, TypeVar
 
 import click
 from click.core import ParameterSource
@@ -32,6 +32,8 @@ from ptmcad.errors import ConfigError
 from ptmcad.options import Progress
 from ptmcad.process.handover import Topic, send, watched
 from ptmcad.process.memory import Bound, bounded, kernel_lines
+from ptmcad.process.output import check_writable
+from ptmcad.question.config import file_name
 
 F = TypeVar("F", bound=Callable[..., Any])
 
@@ -75,6 +77,45 @@ def gathered(**kinds: Gathering) -> Callable[[F], F]:
     return decorate
 
 
+def option(
+    name: str,
+    help: str,
+    metavar: str | None = None,
+    type: Any = None,
+    *,
+    read: Callable[[str, Any], Any] | None = None,
+    **how: Any,
+) -> Callable[[F], F]:
+    """An option of a command, as `click.option` has it, whose help ends with its default.
+
+    Parameters
+    ----------
+    name : of the option, and of the command's parameter where that differs.
+    metavar, type : of its value; without either, and without a default, it is a flag.
+    read : what the command gets, as a function of the option's name and the value, if one is given.
+    """
+    has_default = "default" in how
+    if metavar is None and type is None and not has_default:
+        how["is_flag"] = True
+    if read is not None:
+        how["callback"] = reading(read)
+    return click.option(
+        *name.split(), help=help, metavar=metavar, type=type,
+        show_default=has_default and "[default: " not in help, **how,
+    )  # fmt: skip
+
+
+def together(*added: Callable[[F], F]) -> Callable[[F], F]:
+    """Decorators as one, as if they stood one below the other."""
+
+    def decorate(command: F) -> F:
+        for add in reversed(added):
+            command = add(command)
+        return command
+
+    return decorate
+
+
 PATH = click.Path(path_type=Path)
 
 
@@ -90,21 +131,17 @@ result_argument = click.argument("result", type=PATH, shell_complete=files(".jso
 
 def name_option(default: str) -> Callable[[F], F]:
     """Add ``--name``, with which the names of all files begin."""
-    return click.option(
-        "--name", metavar="NAME", help=f"Start of the files' names.  [default: {default}]"
-    )
+    said = f"Start of the files' names.  [default: {default}]"
+    return option("--name", said, "NAME", read=lambda key, name: file_name(name, key))
 
 
-def out_option(command: F) -> F:
-    """Add ``--out``, the folder for what a command writes."""
-    return click.option(
-        "--out", type=PATH, default=Path(), help="Folder for the files.  [default: .]"
-    )(command)
+out_option = option("--out", "Folder for the files.  [default: .]", type=PATH, default=Path())
+"""The folder for what a command writes."""
 
 
 def file_option(name: str, suffix: str, metavar: str, help: str) -> Callable[[F], F]:
     """An option for a file, of which the shell proposes those of a suffix."""
-    return click.option(name, type=PATH, shell_complete=files(suffix), metavar=metavar, help=help)
+    return option(name, help, metavar, PATH, shell_complete=files(suffix))
 
 
 Formats = tuple[str, ...]
@@ -119,10 +156,10 @@ def format_option(
     """
     help = help.format(", ".join(known)) + "  [default: none]" * (default is None)
     kinds = reading(lambda _, text: _kinds(text, known), absent=())
-    return click.option(
-        "--format", "formats", callback=kinds, shell_complete=completed(known),
-        default=default, show_default=default is not None, metavar="LIST", help=help,
-    )  # fmt: skip
+    how: dict[str, Any] = {} if default is None else {"default": default}
+    return option(
+        "--format formats", help, "LIST", callback=kinds, shell_complete=completed(known), **how
+    )
 
 
 def _kinds(text: str, known: Formats) -> Formats:
@@ -155,34 +192,32 @@ def report_idle(cases: Iterable[Idle]) -> None:
             click.echo(f"note: {flags[parameter]} has no effect here: {why}", err=True)
 
 
-def _has_picture(formats: Iterable[str]) -> bool:
-    return bool(set(formats) - {"json", "csv", "npz", "table", "obj", "ply"})
+def check_output(folder: Path, files: tuple[str, ...]) -> None:
+    """Prove that the files can be written; where there are none, say that options for them have no
+    effect.
 
-
-def idle_output(files: Collection[str]) -> tuple[Idle, ...]:
-    """The options that say where files go and what they are called, where there are none."""
-    return tuple((name, not files, "no file is written, see --format") for name in ("out", "name"))
+    Raises
+    ------
+    OutputError
+    """
+    if files:
+        check_writable(folder, files)
+    report_idle((name, not files, "no file is written, see --format") for name in ("out", "name"))
 
 
 def idle_style(formats: Iterable[str]) -> tuple[Idle, ...]:
-    """The options of a picture's style where none of these formats is a picture."""
-    return tuple(
-        (name, not _has_picture(formats), "no picture is written") for name in (*STYLE, "dpi")
-    )
+    """The options of a picture's look where none of these formats is a picture."""
+    drawn = bool(set(formats) - {"json", "csv", "npz", "table", "obj", "ply"})
+    return tuple((name, not drawn, "no picture is written") for name in (*STYLE, "dpi", "samples"))
 
 
 def idle_drawing(formats: Iterable[str]) -> tuple[Idle, ...]:
     """The options of `ptmcad.cli.drawing` that none of these formats heeds."""
-    chosen = set(formats)
+    numbers = {"csv", "npz"} & set(formats)
     return (
         *idle_style(formats),
-        ("samples", not _has_picture(formats), "no picture is written"),
-        ("pixels", "npz" not in chosen, "only NPZ has a grid, see --format"),
-        (
-            "boundary_tolerance",
-            not chosen & {"csv", "npz"},
-            "only CSV and NPZ have boundaries, see --format",
-        ),
+        ("pixels", "npz" not in numbers, "only NPZ has a grid, see --format"),
+        ("boundary_tolerance", not numbers, "only CSV and NPZ have boundaries, see --format"),
     )
 
 
@@ -251,23 +286,26 @@ def default_bound() -> Bound:
     )
 
 
-class ResourceLimits(NamedTuple):
-    """Seconds and memory that a command may take, None for no limit of its own."""
-
-    timeout: float | None
-    max_memory: Bound | None
-
-
 def limit_options(command: F) -> F:
-    """Add ``--timeout`` and ``--max-memory``, which the command gets as ``limits``."""
-    command = gathered(limits=ResourceLimits)(command)
-    command = click.option("--max-memory", callback=reading(lambda _, text: bound_of(text)), metavar="SIZE",
-                           help="Stop before using more memory, such as 500M or 2G (exit status 3; 2 when it is "
-                                "too little to start with).  "
-                                "[default: 9/10 of the machine's]")(command)  # fmt: skip
-    return click.option("--timeout", type=float, callback=reading(seconds_of), metavar="S",
-                        help="Stop after S seconds (exit status 3); loading the certified engine, and compiling it "
-                             "once on a machine, are not counted.")(command)  # fmt: skip
+    """Add ``--timeout`` and ``--max-memory``, within which the command runs.
+
+    One that has a parameter ``timeout`` gets the seconds, and starts their clock itself, by
+    `report_deadline` or `clock_stopped`, once it has read what it is asked.
+    """
+    passed = {"timeout"} & inspect.signature(command).parameters.keys()
+
+    @wraps(command)
+    def limited(*, timeout: float | None, max_memory: Bound | None, **given: Any) -> Any:
+        with held(None if passed else timeout, max_memory):
+            return command(**given, **dict.fromkeys(passed, timeout))
+
+    return together(
+        option("--timeout", "Stop after S seconds (exit status 3); loading the certified engine, and compiling it "
+               "once on a machine, are not counted.", "S", float, read=seconds_of),
+        option("--max-memory", "Stop before using more memory, such as 500M or 2G (exit status 3; 2 when it is "
+               "too little to start with).  [default: 9/10 of the machine's]", "SIZE",
+               read=lambda _, text: bound_of(text)),
+    )(limited)  # type: ignore[return-value]  # fmt: skip
 
 
 def report_deadline(timeout: float | None, spent: float = 0.0) -> None:
@@ -296,10 +334,10 @@ def compile_certified(timeout: float | None, progress: Progress) -> None:
 
 
 @contextmanager
-def held(limits: ResourceLimits) -> Iterator[None]:
-    """Set the limits for what is done inside."""
-    report_deadline(limits.timeout)
-    bound = limits.max_memory or (default_bound() if watched() else None)
+def held(timeout: float | None, max_memory: Bound | None) -> Iterator[None]:
+    """Set limits for what is done inside: seconds and memory, None for no limit of its own."""
+    report_deadline(timeout)
+    bound = max_memory or (default_bound() if watched() else None)
     # NumPy's linear algebra would reserve memory for every processor; the small matrices here are
     # no faster on several
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")

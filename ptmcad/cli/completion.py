@@ -1,20 +1,19 @@
-"""Completion in bash, zsh and fish: what the shell asks the program when Tab is pressed, and what it may
-propose for a value, as far as that is known: names, formats, files.
+"""What could be typed next, for the shell: commands, options, names of parameters, formats and files.
 
 Guarantee: an answer is printed and nothing else: no message on standard error. Proposing computes
 nothing, changes no file, and fails silently where a record cannot be read: whoever types sees why
 when the command runs. The protocol is click's: a variable holds ``SHELL_source`` for the script
-that a shell reads once, or ``SHELL_complete`` for what could be typed next; the words typed so far
-are the context's ``obj``.
+that a shell reads once, or ``SHELL_complete`` for what could be typed next.
 """
 
 from __future__ import annotations
 
-import json
 import os
 from collections.abc import Callable, Iterable
+from glob import escape, glob
+from itertools import chain
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import click
 
@@ -22,209 +21,159 @@ from ptmcad.errors import PtmcadError
 from ptmcad.question.shipped import shipped_records
 
 if TYPE_CHECKING:
-    from click.shell_completion import CompletionItem
+    from ptmcad.question.slice import Slice
 
-    from ptmcad.model import Model
-
-Complete = Callable[[click.Context, click.Parameter, str], "list[CompletionItem]"]
+Complete = Callable[[click.Context, click.Parameter, str], list[Any]]
+Known = Callable[[click.Context, click.Parameter], Iterable[str]]
 MAX_BYTES = 20_000_000
 """Of a result whose axes are looked up: of a larger one nothing is proposed."""
-_FILE = "file"
+_FILE = click.Path()
+"""For which the shell proposes files."""
 
 
-def _item(name: str, type: str = "plain") -> CompletionItem:
-    from click.shell_completion import CompletionItem  # which commands that run do not need
-
-    return CompletionItem(name, type=type)
-
-
-def _begun(names: Iterable[str], typed: str) -> list[CompletionItem]:
-    """Those that begin as what was typed."""
-    return [_item(name) for name in names if name.startswith(typed)]
-
-
-def proposing(
-    known: Callable[[click.Context], Iterable[str]], after: str = "", listed: bool = False
-) -> Complete:
+def proposing(known: Known, after: str = "", listed: bool = False) -> Complete:
     """Names, each with a sign after it if there is one; of a list, separated by commas, those that
     it does not have.
     """
 
-    def propose(
-        context: click.Context, _parameter: click.Parameter, typed: str
-    ) -> list[CompletionItem]:
+    def propose(context: click.Context, parameter: click.Parameter, typed: str) -> list[str]:
         before, comma, last = typed.rpartition(",") if listed else ("", "", typed)
         if after and after in last:
             return []
         given = {part.partition("=")[0].strip() for part in before.split(",")}
-        return _begun(
-            (f"{before}{comma}{name}{after}" for name in known(context) if name not in given), typed
-        )
+        try:
+            names = [name for name in known(context, parameter) if name not in given]
+        except (PtmcadError, OSError, ValueError, LookupError, TypeError):  # of the file's content
+            return []
+        proposed = (f"{before}{comma}{name}{after}" for name in names)
+        return [text for text in proposed if text.startswith(typed)]
 
     return propose
 
 
 def formats(known: Iterable[str]) -> Complete:
     """The formats that a list does not have yet."""
-    return proposing(lambda _: known, listed=True)
+    return proposing(lambda *_: known, listed=True)
 
 
-def palettes(
-    context: click.Context, parameter: click.Parameter, typed: str
-) -> list[CompletionItem]:
+def palettes(context: click.Context, parameter: click.Parameter, typed: str) -> list[Any]:
     """A palette, or colours by name."""
     from ptmcad.show.style import NAMED, PALETTES
 
-    return [*_begun(PALETTES, typed), *(formats(NAMED)(context, parameter, typed) if typed else [])]
+    colours = formats(NAMED)(context, parameter, typed) if typed else []
+    return [*proposing(lambda *_: PALETTES)(context, parameter, typed), *colours]
 
 
-poses = proposing(lambda _: ("stable:", "unstable:", "saddle:", "maximum:", "pose:"))
+poses = proposing(lambda *_: ("stable:", "unstable:", "saddle:", "maximum:", "pose:"))
 """KIND:, of which the number is for the user to say."""
 
 
-def mechanisms(
-    _context: click.Context, _parameter: click.Parameter, typed: str
-) -> list[CompletionItem]:
+def mechanisms(context: click.Context, parameter: click.Parameter, typed: str) -> list[Any]:
     """The built-in mechanisms and systems; else a file."""
     from ptmcad.question.config.starters import NAMES
 
-    return _begun(NAMES, typed) or [_item(typed, type=_FILE)]
+    found = proposing(lambda *_: NAMES)(context, parameter, typed)
+    return found or _FILE.shell_complete(context, parameter, typed)
 
 
 def files(*suffixes: str) -> Complete:
     """The files of these suffixes, shipped records where those are asked for, and folders to look
     in; whatever there is where there are none of them."""
 
-    def propose(
-        _context: click.Context, _parameter: click.Parameter, typed: str
-    ) -> list[CompletionItem]:
-        folder, _, start = typed.rpartition("/")
-        base = f"{folder}/" if "/" in typed else ""
-        try:
-            entries = sorted(os.scandir(base or "."), key=lambda entry: entry.name)
-        except OSError:  # no such folder
-            return []
-        seen = [
-            e for e in entries if e.name.startswith(start) and (start or not e.name.startswith("."))
-        ]
-        found = [f"{base}{e.name}" for e in seen if e.name.endswith(suffixes) and e.is_file()]
-        found += [f"{base}{e.name}/" for e in seen if e.is_dir()]
+    def propose(context: click.Context, parameter: click.Parameter, typed: str) -> list[Any]:
+        paths = sorted(glob(f"{escape(typed)}*"))
+        found = [path for path in paths if path.endswith(suffixes) and os.path.isfile(path)]
+        found += [f"{path}/" for path in paths if os.path.isdir(path)]
         if ".yaml" in suffixes:
-            found += [
-                name for name in shipped_records() if name.startswith(typed) and name not in found
-            ]
-        return [_item(name) for name in found] or [_item(typed, type=_FILE)]
+            found += [n for n in shipped_records() if n.startswith(typed) and n not in found]
+        return found or _FILE.shell_complete(context, parameter, typed)
 
     return propose
 
 
-def pair_of_names(
-    context: click.Context, parameter: click.Parameter, typed: str
-) -> list[CompletionItem]:
-    """Two axes, such as rho,L2."""
-    found = (
-        proposing(_names, listed=True)(context, parameter, typed) if typed.count(",") < 2 else []
-    )
-    return found if "," in typed else [_item(f"{item.value},") for item in found]
+def _names(context: click.Context, _parameter: click.Parameter) -> Iterable[str]:
+    """The axes of the record or result that was typed, or else of the default, and the model's
+    parameters.
+    """
+    from ptmcad.model import ptm
+    from ptmcad.question.config.modelkeys import model_of
+    from ptmcad.question.config.starters import NAMES, starter_text
+    from ptmcad.text.yamltree import read_text
+
+    slice, mechanism = _typed_slice(context), context.params.get("mechanism")
+    if any(parameter.name == "result" for parameter in context.command.params):
+        return () if slice is None else slice.axis_names
+    if slice is not None:
+        return dict.fromkeys((*slice.axis_names, *slice.model.parameters))
+    if mechanism in NAMES:
+        return model_of(read_text(starter_text(mechanism))).parameters
+    return ptm().parameters if mechanism is None else ()
 
 
-def quantity_names(
-    context: click.Context, parameter: click.Parameter, typed: str
-) -> list[CompletionItem]:
+def _quantities(context: click.Context, parameter: click.Parameter) -> Iterable[str]:
     """What a pose of the record's model, or of the default one, can be asked for; barriers by
     ``--value`` alone.
     """
     from ptmcad.ask.quantities import quantities
     from ptmcad.model import ptm
-    from ptmcad.question.config import load
 
-    try:
-        config = _typed_file(context, ".yaml", ".yml")
-        model = _model_of_result(context) or ptm() if config is None else load(config).model
-    except (
-        PtmcadError,
-        OSError,
-        ValueError,
-    ):  # the command itself will say what is wrong with the file
-        return []
+    slice = _typed_slice(context)
+    model = ptm() if slice is None else slice.model
     further = model.criterion.differences if "--value" in parameter.opts else ()
-    return _begun((*quantities(model), *further), typed)
+    return (*quantities(model), *further)
 
 
-def _names(context: click.Context) -> tuple[str, ...]:
-    """The axes of the record or result that was typed, or else of the default, and the model's
-    parameters.
+def _typed_slice(context: click.Context) -> Slice | None:
+    """That of the record or result among the words typed so far, where there is one.
+
+    Click's parser leaves words alone where the last one is an option that waits for its value.
     """
-    try:
-        if any(parameter.name == "result" for parameter in context.command.params):
-            result = _typed_file(context, ".json")
-            return () if result is None else _axes_of_result(result)
-        return _names_of_question(
-            _typed_file(context, ".yaml", ".yml"), context.params.get("mechanism")
-        )
-    except (
-        PtmcadError,
-        OSError,
-        ValueError,
-    ):  # the command itself will say what is wrong with the file
-        return ()
-
-
-def _typed_file(context: click.Context, *suffixes: str) -> Path | None:
-    """The first file of these suffixes among the words typed so far.
-
-    Click's own parser gives no arguments where the last word is an option that waits for its value.
-    """
-    known = shipped_records() if ".yaml" in suffixes else ()
-    words = (word for word in context.obj or () if word[:1] != "-")
-    return next((Path(word) for word in words if word.endswith(suffixes) or word in known), None)
-
-
-def _model_of_result(context: click.Context) -> Model | None:
-    """Of the stored result that was typed, if one was."""
-    from ptmcad.answer.regionmap import RegionMap
-
-    path = _typed_file(context, ".json")
-    if path is None or path.stat().st_size > MAX_BYTES:
+    words = map(str, chain(filter(None, map(context.params.get, _ARGUMENTS)), context.args))
+    known = shipped_records()
+    path = next((Path(w) for w in words if w.endswith(_SUFFIXES) or w in known), None)
+    if path is None:
         return None
-    return RegionMap.from_json(path.read_text(encoding="utf-8")).slice.model
-
-
-def _axes_of_result(path: Path) -> tuple[str, ...]:
-    if path.stat().st_size > MAX_BYTES:
-        return ()
-    data = json.loads(path.read_text(encoding="utf-8"))
-    axes = (
-        data["slice"]["axes"]
-        if isinstance(data, dict) and isinstance(data.get("slice"), dict)
-        else {}
-    )
-    return tuple(axes)
-
-
-def _names_of_question(config: Path | None, mechanism: str | None) -> tuple[str, ...]:
-    from ptmcad.model import ptm
+    if path.suffix == ".json":
+        return _slice_of_result(path)
     from ptmcad.question.config import load
-    from ptmcad.question.config.modelkeys import model_of
-    from ptmcad.question.config.starters import NAMES, starter_text
-    from ptmcad.text.yamltree import read_text
 
-    if config is not None:
-        asked = load(config)
-        return tuple(dict.fromkeys((*asked.axis_names, *asked.model.parameters)))
-    if mechanism in NAMES:
-        return tuple(model_of(read_text(starter_text(mechanism))).parameters)
-    return tuple(ptm().parameters) if mechanism is None else ()
+    return load(path)
+
+
+_ARGUMENTS = ("config", "record", "result")
+_SUFFIXES = (".yaml", ".yml", ".json")
+
+
+def _slice_of_result(path: Path) -> Slice | None:
+    import json
+
+    from ptmcad.show.document.slicedocument import SLICE
+    from ptmcad.text.node import Node
+
+    if path.stat().st_size > MAX_BYTES:
+        return None
+    return SLICE.read(Node(json.loads(path.read_text(encoding="utf-8"))["slice"], "slice"))
 
 
 names = proposing(_names)
 """An axis or a parameter of the question's model."""
+
+quantity_names = proposing(_quantities)
+"""A quantity of a pose."""
 
 settings = proposing(_names, after="=")
 """NAME=, of which the value is for the user to say."""
 
 point = proposing(_names, after="=", listed=True)
 """NAME=VALUE,NAME=VALUE, as far as names go."""
+
+
+def pair_of_names(context: click.Context, parameter: click.Parameter, typed: str) -> list[Any]:
+    """Two axes, such as rho,L2."""
+    if typed.count(",") > 1:
+        return []
+    found = proposing(_names, listed=True)(context, parameter, typed)
+    return found if "," in typed else [f"{name}," for name in found]
 
 
 def answer(group: click.Group, instruction: str, program: str, variable: str) -> int:
@@ -243,12 +192,11 @@ def answer(group: click.Group, instruction: str, program: str, variable: str) ->
         click.echo(f"error: {variable} is no request of bash, zsh or fish: unset it", err=True)
         return 2
     completer = kind(group, {}, program, variable)
-    if what == "source":
-        # as click has it, but where a value goes on (NAME=, X, or a folder) no space follows in bash
-        further = "\n            [[ $value == *[=,/] ]] && compopt -o nospace"
-        taken = "COMPREPLY+=($value)"
-        click.echo(completer.source().replace(taken, taken + further))
-    else:
-        completer.ctx_args = {"obj": tuple(completer.get_completion_args()[0])}
+    if what == "complete":
         click.echo(completer.complete())
+        return 0
+    # as click has it, but where a value goes on (NAME=, X, or a folder) no space follows in bash
+    further = "\n            [[ $value == *[=,/] ]] && compopt -o nospace"
+    taken = "COMPREPLY+=($value)"
+    click.echo(completer.source().replace(taken, taken + further))
     return 0

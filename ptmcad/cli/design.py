@@ -10,27 +10,24 @@ import click
 
 from ptmcad.cli.commonoptions import (
     Formats,
-    ResourceLimits,
+    check_output,
     clock_stopped,
     format_option,
     gathered,
-    held,
-    idle_output,
     limit_options,
     name_option,
+    option,
     out_option,
     record_argument,
-    report_idle,
 )
 from ptmcad.cli.completion import names, settings
-from ptmcad.cli.drawing import report_written, share_of, write_answer
+from ptmcad.cli.drawing import report_written, write_answer
 from ptmcad.cli.progress import ProgressBar
 from ptmcad.cli.slices import question_in
-from ptmcad.process.output import check_writable
-from ptmcad.question.config import file_name
 from ptmcad.question.config.designkey import design_from_options
 from ptmcad.question.shipped import FIRST, SECOND
 from ptmcad.show import render
+from ptmcad.text.parsing import share_for
 
 FORMATS = ("json", "png", "svg", "pdf")
 SEED, BOXES = 1, 100_000
@@ -45,35 +42,55 @@ CONDITIONS = ("stable", "tension", "conditions")
 
 @click.command("design")
 @record_argument(required=True)
-@click.option("--maximise", metavar="WHAT",
-              help="range, area, barrier, a quantity such as force:SPRING, or an expression.  "
-                   "[default: range]")  # fmt: skip
-@click.option("--along", metavar="NAME", shell_complete=names,
-              help="The axis along which a range lies.  [default: the first]")  # fmt: skip
-@click.option("--over", multiple=True, metavar="NAME=LO:HI", shell_complete=settings,
-              help="A design parameter with its bounds, in place of all that the record has. Repeatable.")  # fmt: skip
-@click.option("--stable", type=click.IntRange(0, 1000), metavar="N",
-              help="How many stable poses there are to be.  [default: 2]")  # fmt: skip
-@click.option("--tension", is_flag=True, help="All springs are to be in tension.")
-@click.option("--condition", "conditions", multiple=True, metavar="TEXT",
-              help=f"An inequality of design parameters, such as '{FIRST} + {SECOND} <= 3'. Repeatable.")  # fmt: skip
-@click.option(
-    "--pose", metavar="POSE", help="Of which pose a barrier or a quantity is.  [default: stable:1]"
+@option(
+    "--maximise",
+    "range, area, barrier, a quantity such as force:SPRING, or an expression.  [default: range]",
+    "WHAT",
 )
-@click.option("--tolerance", callback=share_of, metavar="EPS",
-              help="How far the proved bound may lie above the value, as a share of it.  [default: 1/100]")  # fmt: skip
-@click.option(
-    "--seed",
-    type=click.IntRange(min=0),
-    default=SEED,
-    show_default=True,
-    help="Of the global search.",
+@option(
+    "--along",
+    "The axis along which a range lies.  [default: the first]",
+    "NAME",
+    shell_complete=names,
 )
-@click.option("--evaluations", type=click.IntRange(min=1), metavar="N",
-              help="Designs that are evaluated before the proof, at most.  [default: by the number of "
-                   "parameters]")  # fmt: skip
-@click.option("--boxes", type=click.IntRange(min=1), default=BOXES, show_default=True, metavar="N",
-              help="Boxes of designs that the proof may take.")  # fmt: skip
+@option(
+    "--over",
+    "A design parameter with its bounds, in place of all that the record has. Repeatable.",
+    "NAME=LO:HI",
+    multiple=True,
+    shell_complete=settings,
+)
+@option(
+    "--stable", "How many stable poses there are to be.  [default: 2]", "N", click.IntRange(0, 1000)
+)
+@option("--tension", "All springs are to be in tension.")
+@option(
+    "--condition conditions",
+    f"An inequality of design parameters, such as '{FIRST} + {SECOND} <= 3'. Repeatable.",
+    "TEXT",
+    multiple=True,
+)
+@option("--pose", "Of which pose a barrier or a quantity is.  [default: stable:1]", "POSE")
+@option(
+    "--tolerance",
+    "How far the proved bound may lie above the value, as a share of it.  [default: 1/100]",
+    "EPS",
+    read=share_for,
+)
+@option("--seed", "Of the global search.", type=click.IntRange(min=0), default=SEED)
+@option(
+    "--evaluations",
+    "Designs that are evaluated before the proof, at most.  [default: by the number of parameters]",
+    "N",
+    click.IntRange(min=1),
+)
+@option(
+    "--boxes",
+    "Boxes of designs that the proof may take.",
+    "N",
+    click.IntRange(min=1),
+    default=BOXES,
+)
 @out_option
 @name_option("NAME-design")
 @format_option(FORMATS)
@@ -90,7 +107,7 @@ def command(
     out: Path,
     name: str | None,
     formats: Formats,
-    limits: ResourceLimits,
+    timeout: float | None,
 ) -> int:
     """Find the design that makes a range, an area, a barrier or an expression as large as possible.
 
@@ -107,28 +124,22 @@ def command(
         ptmcad design fig4 --maximise barrier --over rho=1/4:2 --over L2=1/4:2
     """
     question = design_from_options(where=where, **asked)
-    stem = question.name if name is None else file_name(name, "--name")
+    stem = name or question.name
     wanted = tuple(f"{stem}.{kind}" for kind in sorted(formats, key=lambda kind: kind == "json"))
-    report_idle(idle_output(wanted))
-    with held(limits):
-        if wanted:
-            check_writable(out, wanted)
-        with clock_stopped(
-            limits.timeout
-        ):  # the time that the import takes is not the computation's
-            from ptmcad.workbench.designs.bestdesign import TOLERANCE, design
-        with ProgressBar() as progress:
-            found = design(
-                question,
-                tolerance=tolerance or TOLERANCE,
-                seed=seed,
-                evaluations=evaluations,
-                boxes=boxes,
-                timeout=None if limits.timeout is None else limits.timeout * _RESERVE,
-                progress=progress,
-            )
-        click.echo(f"{question_in(question.record, question.record.name or stem)}\n{found.table()}")
-        if wanted:
-            write_answer(out, wanted, lambda _: render.figure_of_design(found), found.to_json)
-            report_written(out, wanted)
+    check_output(out, wanted)
+    with clock_stopped(timeout):  # the time that the import takes is not the computation's
+        from ptmcad.workbench.designs.bestdesign import TOLERANCE, design
+    with ProgressBar() as progress:
+        found = design(
+            question,
+            tolerance=tolerance or TOLERANCE,
+            seed=seed,
+            evaluations=evaluations,
+            boxes=boxes,
+            timeout=None if timeout is None else timeout * _RESERVE,
+            progress=progress,
+        )
+    click.echo(f"{question_in(question.record, question.record.name or stem)}\n{found.table()}")
+    write_answer(out, wanted, lambda _: render.figure_of_design(found), found.to_json)
+    report_written(out, wanted)
     return 3 if found.bound is not None and found.best is not None and not found.proved else 0

@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import click
 
-from ptmcad.cli.commonoptions import STYLE, F, Formats, format_option, gathered, reading
+from ptmcad.cli.commonoptions import STYLE, F, Formats, format_option, gathered, option, together
 from ptmcad.cli.completion import palettes
 from ptmcad.errors import ConfigError, PictureError, PtmcadError, blamed, shown_path
 from ptmcad.process.output import Writer, save_stopped, text_writer, write_files
@@ -56,9 +56,21 @@ def picture(name: str, draw: Writer) -> Writer:
     return write
 
 
-def figure(name: str, make: Callable[[], Any], **printing: Any) -> Writer:
-    """The same of a figure that a function makes, printed as by `ptmcad.show.render.printing.save`."""
-    return picture(name, lambda path: render.save(make(), path, **printing))
+def writer(name: str, make: Callable[[], Any], **printing: Any) -> Writer:
+    """The same of what a function makes: a text, bytes, or a figure, which is printed as by
+    `ptmcad.show.render.printing.save`.
+    """
+
+    def draw(path: Path) -> None:
+        made = make()
+        if isinstance(made, str):
+            text_writer(made)(path)
+        elif isinstance(made, bytes):
+            path.write_bytes(made)
+        else:
+            render.save(made, path, **printing)
+
+    return picture(name, draw)
 
 
 def _reason(error: Exception) -> str:
@@ -109,17 +121,19 @@ def write_answer(
     make: Callable[[str], Any],
     text: Callable[[], str],
 ) -> None:
-    """Write an answer's files, as `write_result`: the JSON, where one of the names is its, and a
-    picture of each other name.
+    """Write an answer's files, if any, as `write_result`: the JSON, where one of the names is its, and a
+    writer of what is made for each other name.
 
     Parameters
     ----------
-    make : gives the figure of a name.
+    make : gives what a name stands for, as of `writer`.
     text : gives the JSON.
     """
     known = tuple(names)
+    if not known:
+        return
     file = next((name for name in known if name.endswith(".json")), "")
-    pictures = {name: figure(name, partial(make, name)) for name in known if name != file}
+    pictures = {name: writer(name, partial(make, name)) for name in known if name != file}
     write_result(folder, pictures, file, text() if file else "")
 
 
@@ -172,13 +186,14 @@ class DrawingOptions(NamedTuple):
         """For each file a function that writes it, in the order of the formats."""
         boundaries = cache(lambda: result.boundaries(self.boundary_tolerance))
         found: dict[str, Writer] = {}
-        for kind in formats:
-            for name in names_of(stem, (kind,)):
-                write = {"csv": self._table, "npz": self._arrays}.get(kind, self._picture)
-                found[name] = picture(name, partial(write, result, name, boundaries))
+        for name in names_of(stem, formats):
+            if name.endswith(DATA):
+                found[name] = writer(name, partial(self._numbers, result, name, boundaries))
+            else:
+                found[name] = picture(name, partial(self._picture, result, name))
         return found
 
-    def _picture(self, result: Any, name: str, _boundaries: Callable[[], Any], path: Path) -> None:
+    def _picture(self, result: Any, name: str, path: Path) -> None:
         how = {"dpi": self.dpi, "style": self.style, "overlay": self.overlay}
         if self.poses:
             missing = render.draw_with_poses(result, self.poses, path, **how)
@@ -190,16 +205,13 @@ class DrawingOptions(NamedTuple):
                 err=True,
             )
 
-    def _table(self, result: Any, name: str, boundaries: Callable[[], Any], path: Path) -> None:
+    def _numbers(self, result: Any, name: str, boundaries: Callable[[], Any]) -> str | bytes:
         from ptmcad.show import data
 
+        if name.endswith(".npz"):
+            return data.npz_bytes(result, boundaries(), result.grid(*self.pixels))
         table = name.removesuffix(".csv").rpartition("-")[2]
-        text_writer(data.csv_text(data.rows_of(result, table, boundaries)))(path)
-
-    def _arrays(self, result: Any, _name: str, boundaries: Callable[[], Any], path: Path) -> None:
-        from ptmcad.show.data import npz_bytes
-
-        path.write_bytes(npz_bytes(result, boundaries(), result.grid(*self.pixels)))
+        return data.csv_text(data.rows_of(result, table, boundaries))
 
 
 class Output(NamedTuple):
@@ -226,11 +238,7 @@ class Output(NamedTuple):
         return text
 
 
-share_of = reading(share_for)
-"""A share between 0 and 1, where one is given."""
-
-
-def _pixels(key: str, value: str) -> tuple[int, int]:
+def pixels_for(key: str, value: str) -> tuple[int, int]:
     """Columns and rows, such as 400 or 400x300."""
     match = re.fullmatch(r"(\d{1,6})(?:x(\d{1,6}))?", value.strip(), re.ASCII)
     sides = (int(match[1]), int(match[2] or match[1])) if match else (0, 0)
@@ -239,9 +247,6 @@ def _pixels(key: str, value: str) -> tuple[int, int]:
             f"{value!r} is not a size such as 400 or 400x300, of 1 to {MAX_SIDE} each", key=key
         )
     return sides
-
-
-pixels_of = reading(_pixels)
 
 
 def style_of(*, style: str, **options: Any) -> PictureStyle:
@@ -258,33 +263,25 @@ def style_of(*, style: str, **options: Any) -> PictureStyle:
     return made
 
 
-def style_options(command: F) -> F:
-    """Add the options that make a `PictureStyle`, which the command gets as ``style``, and
-    ``--dpi``.
-    """
-    command = gathered(style=(STYLE, style_of))(command)
-    for option in (
-        click.option("--dpi", type=click.IntRange(50, 1200), default=150, show_default=True,
-                     help="Resolution of a PNG; regions of a map that are too thin for it get insets, in every format."),
-        click.option("--thin-lines", type=click.Choice(LINES),
-                     help="Curves of the variety where the count does not change.  [default: solid]"),
-        click.option("--line-width", metavar="PT", help="Width of curves where the count changes, in points."),
-        click.option("--legend", type=click.Choice([place.value for place in LegendPlace]),
-                     help="Where the legend stands.  [default: where it fits]"),
-        click.option("--title", metavar="TEXT",
-                     help="Title, '' for none.  [default: the slice's heading; none in journals' styles]"),
-        click.option("--palette", metavar="NAME|COLOUR,..", shell_complete=palettes,
-                     help=f"{', '.join(PALETTES)}, or colours for the counts, or values, in increasing order.  "
-                          "[default: default]"),
-        click.option("--font-family", metavar="NAME,..", help="Fonts that are installed; the first that has a letter."),
-        click.option("--font-size", metavar="PT", help="Of the legend, at the printed size; none below 6 points."),
-        click.option("--size", metavar="WxH", help="Of the whole picture, as 3.5x2.6in or 90x70mm."),
-        click.option("--style", type=click.Choice(tuple(PRESETS)), default="default", show_default=True,
-                     help="Size, font and lines for a journal's column, a slide or a poster. Other options "
-                          "override."),
-    ):  # fmt: skip
-        command = option(command)
-    return command
+style_options = together(
+    option("--style", "Size, font and lines for a journal's column, a slide or a poster. Other options override.",
+           type=click.Choice(tuple(PRESETS)), default="default"),
+    option("--size", "Of the whole picture, as 3.5x2.6in or 90x70mm.", "WxH"),
+    option("--font-size", "Of the legend, at the printed size; none below 6 points.", "PT"),
+    option("--font-family", "Fonts that are installed; the first that has a letter.", "NAME,.."),
+    option("--palette", f"{', '.join(PALETTES)}, or colours for the counts, or values, in increasing order.  "
+           "[default: default]", "NAME|COLOUR,..", shell_complete=palettes),
+    option("--title", "Title, '' for none.  [default: the slice's heading; none in journals' styles]", "TEXT"),
+    option("--legend", "Where the legend stands.  [default: where it fits]",
+           type=click.Choice([place.value for place in LegendPlace])),
+    option("--line-width", "Width of curves where the count changes, in points.", "PT"),
+    option("--thin-lines", "Curves of the variety where the count does not change.  [default: solid]",
+           type=click.Choice(LINES)),
+    option("--dpi", "Resolution of a PNG; regions of a map that are too thin for it get insets, in every format.",
+           type=click.IntRange(50, 1200), default=150),
+    gathered(style=(STYLE, style_of)),
+)  # fmt: skip
+"""The options that make a `PictureStyle`, which the command gets as ``style``, and ``--dpi``."""
 
 
 def drawing_options(known: Formats, default: str, what: str) -> Callable[[F], F]:
@@ -296,19 +293,13 @@ def drawing_options(known: Formats, default: str, what: str) -> Callable[[F], F]
     known, default : formats.
     what : the help's first words about the formats.
     """
-
-    def decorate(command: F) -> F:
-        command = style_options(gathered(drawing=(_DRAWING, DrawingOptions))(command))
-        for option in (
-            click.option("--pixels", callback=pixels_of, default="400x400", show_default=True, metavar="NxM",
-                         help="Columns and rows of the grid of exact counts in an NPZ."),
-            click.option("--boundary-tolerance", callback=share_of, default="1/1000", show_default=True,
-                         metavar="EPS", help="How far boundaries in CSV and NPZ may be from the true curves, as a "
-                                             "share of the window's side."),
-            click.option("--samples", is_flag=True, help="Draw the cells' sample points."),
-            format_option(known, what + ", of {}.", default),
-        ):  # fmt: skip
-            command = option(command)
-        return command
-
-    return decorate
+    return together(
+        format_option(known, what + ", of {}.", default),
+        option("--samples", "Draw the cells' sample points."),
+        option("--boundary-tolerance", "How far boundaries in CSV and NPZ may be from the true curves, as a share of "
+               "the window's side.", "EPS", read=share_for, default="1/1000"),
+        option("--pixels", "Columns and rows of the grid of exact counts in an NPZ.", "NxM",
+               read=pixels_for, default="400x400"),
+        style_options,
+        gathered(drawing=(_DRAWING, DrawingOptions)),
+    )  # fmt: skip

@@ -10,7 +10,7 @@ from tempfile import TemporaryDirectory
 
 import click
 
-from ptmcad.cli.commonoptions import ResourceLimits, held, limit_options, out_option
+from ptmcad.cli.commonoptions import limit_options, option, out_option
 from ptmcad.cli.slices import slice_options
 from ptmcad.extras import require
 from ptmcad.process.handover import Topic, send
@@ -20,20 +20,17 @@ from ptmcad.question.config.typed import Typed
 
 @click.command("explore")
 @slice_options
-@click.option(
-    "--free",
-    metavar="NAME=LO:HI",
-    help="A third parameter: its slider's maps share one computation.",
+@option("--free", "A third parameter: its slider's maps share one computation.", "NAME=LO:HI")
+@option(
+    "--slider sliders", "The ends of a parameter's slider. Repeatable.", "NAME=LO:HI", multiple=True
 )
-@click.option("--slider", "sliders", multiple=True, metavar="NAME=LO:HI",
-              help="The ends of a parameter's slider. Repeatable.")  # fmt: skip
-@click.option(
+@option(
     "--port",
+    "Port to listen on.  [default: any that is free]",
     type=click.IntRange(0, 65535),
     default=0,
-    help="Port to listen on.  [default: any that is free]",
 )
-@click.option("--open", "opened", is_flag=True, help="Open the page in the browser.")
+@option("--open opened", "Open the page in the browser.")
 @out_option
 @limit_options
 def command(
@@ -44,7 +41,6 @@ def command(
     port: int,
     opened: bool,
     out: Path,
-    limits: ResourceLimits,
 ) -> None:
     """Explore the slices of CONFIG in the browser: drag a parameter and see the exact map follow.
 
@@ -59,20 +55,19 @@ def command(
     """
     require("explore")
     record = record_from_options(asked._replace(free=free))
-    with held(limits):
-        from ptmcad.workbench.explore.panel import panel_of
+    from ptmcad.workbench.explore.panel import panel_of
 
-        panel = panel_of(record, sliders)
-        from ptmcad.workbench.explore.server import serve
+    panel = panel_of(record, sliders)
+    from ptmcad.workbench.explore.server import serve
 
-        def announce(address: str) -> None:
-            click.echo(f"explore   {address}\n          works once, in one browser; Ctrl-C ends it")
-            if opened:
-                _open(address, Path(folder))
+    def announce(address: str) -> None:
+        click.echo(f"explore   {address}\n          works once, in one browser; Ctrl-C ends it")
+        if opened:
+            _open(address, Path(folder))
 
-        send(Topic.RESUMABLE, "")  # a signal is its usual end
-        with TemporaryDirectory(prefix="ptmcad-explore-") if opened else nullcontext("") as folder:
-            asyncio.run(serve(panel, out, port, announce))
+    send(Topic.RESUMABLE, "")  # a signal is its usual end
+    with TemporaryDirectory(prefix="ptmcad-explore-") if opened else nullcontext("") as folder:
+        asyncio.run(serve(panel, out, port, announce))
 
 
 def _open(address: str, folder: Path) -> None:

@@ -8,14 +8,16 @@ leaves whole maps.
 from __future__ import annotations
 
 import time
+from collections.abc import Mapping
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from ptmcad.answer.family import FamilyMap
 from ptmcad.answer.regionmap import RegionMap
 from ptmcad.cli.commonoptions import Formats
-from ptmcad.cli.drawing import DATA, MESHES, PICTURES, DrawingOptions, Output, figure, names_of
+from ptmcad.cli.drawing import DATA, MESHES, PICTURES, DrawingOptions, Output, writer
 from ptmcad.cli.progress import ProgressBar
 from ptmcad.cli.slices import Third
 from ptmcad.cli.storedresults import read_other, read_result
@@ -32,6 +34,7 @@ if TYPE_CHECKING:
 
 SOLID = "-3d"
 """Behind a family's name, in that of its picture in three dimensions."""
+_FIGURES = ("", SOLID)
 
 
 def family_to_files(
@@ -48,8 +51,8 @@ def family_to_files(
     PtmcadError
         Any other of its kinds, naming the member.
     """
-    names = names_of_family(family.name, wanted)
-    check_writable(wanted.out, names)
+    files = names_of_family(family.name, wanted.formats)
+    check_writable(wanted.out, tuple(files))
     members: list[RegionMap] = []
     with ProgressBar() as progress:
         from ptmcad.ask.members import member_map
@@ -91,8 +94,10 @@ def family_to_files(
 
             surface = surface_of(common, changes, options=replace(left(), progress=progress))
     result = together(family, common, tuple(members), changes)
-    if writers := _writers(result, surface, wanted, third.surface):
-        write_files(wanted.out, writers)
+    if files:
+        write_files(
+            wanted.out, family_writers(result, files, wanted.drawing, surface, third.surface)
+        )
     return result, surface
 
 
@@ -103,11 +108,13 @@ def _at(error: PtmcadError, place: str) -> PtmcadError:
     return type(error)(f"{error} (at {place})")
 
 
-def names_of_family(name: str, wanted: Output) -> tuple[str, ...]:
-    """The family's own files."""
-    names = [f"{name}{end}.{kind}" for kind in wanted.among(PICTURES) for end in ("", SOLID)]
-    names += [f"{name}.{kind}" for kind in wanted.among(MESHES)]
-    return (*names, f"{name}.json") if "json" in wanted.formats else tuple(names)
+def names_of_family(stem: str, formats: Formats) -> dict[str, str]:
+    """The family's own files, each with what it has: one of `_FIGURES`, or a text of some format."""
+    drawn = [kind for kind in formats if kind in PICTURES]
+    texts = [*(kind for kind in formats if kind in MESHES), *["json"] * ("json" in formats)]
+    return {f"{stem}{part}.{kind}": part for kind in drawn for part in _FIGURES} | {
+        f"{stem}.{kind}": kind for kind in texts
+    }
 
 
 def _write_member(found: RegionMap, wanted: Output) -> None:
@@ -119,48 +126,40 @@ def _write_member(found: RegionMap, wanted: Output) -> None:
         write_files(wanted.out, writers)
 
 
-def _writers(
-    result: FamilyMap, surface: BoundarySurface | None, wanted: Output, solid: bool
-) -> dict[str, Writer]:
-    name = result.name
-    shown = surface if solid else None
-    writers = picture_writers(result, name, wanted.among(PICTURES), wanted.drawing, shown)
-    if surface is not None:
-        writers |= mesh_writers(surface, name, wanted.among(MESHES))
-    if "json" in wanted.formats:
-        writers[f"{name}.json"] = text_writer(write_family(result))
-    return writers
-
-
-def picture_writers(
+def family_writers(
     result: FamilyMap,
-    stem: str,
-    formats: Formats,
+    files: Mapping[str, str],
     drawing: DrawingOptions,
-    surface: BoundarySurface | None = None,
+    surface: BoundarySurface | None,
+    solid: bool,
 ) -> dict[str, Writer]:
-    """For each picture of a family a function that writes it.
+    """For each of a family's own files a function that writes it.
 
     Parameters
     ----------
-    surface : drawn instead of the stack of maps.
+    files : as of `names_of_family`.
+    surface : what meshes are of.
+    solid : whether pictures show it, instead of the stack of maps.
     """
-    found = {}
-    for kind in formats:
-        for end, make in (
-            ("", lambda: render.multiples_figure(result, drawing.dpi, drawing.style)),
-            (SOLID, lambda: render.solid_figure(result, drawing.dpi, drawing.style, surface)),
-        ):
-            for file in names_of(f"{stem}{end}", (kind,)):
-                found[file] = figure(file, make, dpi=drawing.dpi, style=drawing.style)
-    return found
+    how = {"dpi": drawing.dpi, "style": drawing.style}
+
+    def draw(part: str) -> Any:
+        if part not in _FIGURES:
+            return _text(result, part, surface)
+        if part == SOLID:
+            return render.solid_figure(result, *how.values(), surface if solid else None)
+        return render.multiples_figure(result, *how.values())
+
+    return {name: writer(name, partial(draw, part), **how) for name, part in files.items()}
 
 
-def mesh_writers(surface: BoundarySurface, stem: str, formats: Formats) -> dict[str, Writer]:
-    """For each of `MESHES` a function that writes the surface."""
+def _text(result: FamilyMap, kind: str, surface: BoundarySurface | None) -> str:
+    if kind == "json":
+        return write_family(result)
     from ptmcad.show.mesh import MESHES as KNOWN
 
-    return {f"{stem}.{kind}": text_writer(KNOWN[kind](surface)) for kind in formats}
+    assert surface is not None
+    return KNOWN[kind](surface)
 
 
 def read_family_file(path: Path, *, whole: bool = True) -> FamilyMap:

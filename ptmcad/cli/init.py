@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import os
 from pathlib import Path
 
 import click
 
-from ptmcad.cli.commonoptions import PATH
+from ptmcad.cli.commonoptions import PATH, option
 from ptmcad.cli.completion import mechanisms
 from ptmcad.cli.mechanisms import known_starter
 from ptmcad.errors import ConfigError, OutputError
@@ -18,9 +17,13 @@ from ptmcad.question.shipped import shipped_records
 
 @click.command("init")
 @click.argument("mechanism", default="pendulum", shell_complete=mechanisms)
-@click.option("--out", type=PATH, metavar="FILE",
-              help="The file to write; never one that is there. A missing folder is made.  "
-                   "[default: standard output]")  # fmt: skip
+@option(
+    "--out",
+    "The file to write; never one that is there. A missing folder is made.  "
+    "[default: standard output]",
+    "FILE",
+    PATH,
+)
 def command(*, mechanism: str, out: Path | None) -> None:
     """Write a commented record to start from: of MECHANISM, or of a pendulum, or a shipped record of that name.
 
@@ -45,13 +48,13 @@ def command(*, mechanism: str, out: Path | None) -> None:
             f"the folder {out.parent} cannot be made: {reason(error)}; choose another with --out"
         ) from error
     try:
-        descriptor = os.open(out, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o666)
+        stream = out.open("x", encoding="utf-8")
     except FileExistsError as error:
         raise ConfigError(
             "is there already: choose another name, or remove it", key="--out", file=str(out)
         ) from error
     except (OSError, ValueError) as error:
         raise OutputError(f"{out} cannot be written: {reason(error)}") from error
-    with open(descriptor, "w", encoding="utf-8") as stream:
+    with stream:
         stream.write(text)
     click.echo(f"wrote {out}; next: ptmcad check {out}, then ptmcad classify {out} --out out")

@@ -4,17 +4,23 @@ from __future__ import annotations
 
 import csv
 import sys
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
 
 import click
 
 from ptmcad.answer.regionmap import Location, RegionMap
 from ptmcad.answer.words import index_words
-from ptmcad.cli.commonoptions import PATH, ResourceLimits, held, limit_options, result_argument
+from ptmcad.cli.commonoptions import (
+    PATH,
+    F,
+    limit_options,
+    option,
+    result_argument,
+)
 from ptmcad.cli.completion import point as propose_point
 from ptmcad.cli.storedresults import read_result
-from ptmcad.errors import ConfigError, shown
+from ptmcad.errors import ConfigError, blamed, shown
 from ptmcad.process.streams import reader_left
 from ptmcad.question.counts import further_names
 from ptmcad.question.shipped import POINT
@@ -66,6 +72,17 @@ def point_of(text: str) -> dict[str, str]:
             raise ConfigError(f"'{shown(part, 60)}' is not NAME=VALUE: as in {POINT}", key="--at")
         point[name] = value
     return point
+
+
+def point_option(help: str) -> Callable[[F], F]:
+    """Add ``--at``, of which the command gets a point's texts by their names."""
+    return option(
+        "--at",
+        help,
+        "NAME=VALUE,...",
+        read=lambda _, text: point_of(text),
+        shell_complete=propose_point,
+    )
 
 
 CsvRow = tuple[int, dict[str, str]]
@@ -124,10 +141,8 @@ def _table(result: RegionMap, points: Iterator[CsvRow], path: Path) -> None:
     fields = fields_of(result)
     writer.writerow([*result.slice.axis_names, *fields])
     for number, point in points:
-        try:
+        with blamed(file=path, line=number):
             location = result.locate(**point)
-        except ConfigError as error:
-            raise ConfigError(error.message, key=error.key, file=str(path), line=number) from error
         writer.writerow(
             [*(point[name] for name in result.slice.axis_names), *answer(location, fields)]
         )
@@ -160,17 +175,20 @@ def _lines(
 
 @click.command("locate")
 @result_argument
-@click.option(
+@option(
     "--at",
-    "at",
-    metavar="NAME=VALUE,NAME=VALUE",
+    "A point: both axes, exact numbers.",
+    "NAME=VALUE,NAME=VALUE",
     shell_complete=propose_point,
-    help="A point: both axes, exact numbers.",
 )
-@click.option("--csv", "table", type=PATH, metavar="FILE",
-              help="A CSV file whose first row names the axes; prints a CSV row for each of its points.")  # fmt: skip
+@option(
+    "--csv table",
+    "A CSV file whose first row names the axes; prints a CSV row for each of its points.",
+    "FILE",
+    PATH,
+)
 @limit_options
-def command(*, result: Path, at: str | None, table: Path | None, limits: ResourceLimits) -> None:
+def command(*, result: Path, at: str | None, table: Path | None) -> None:
     """Tell in which cell and region of RESULT a rational point lies, and the number of equilibria there.
 
     The answer is exact, however near the point is to a boundary: "on the variety" exactly on a curve, unless no count
@@ -186,14 +204,11 @@ def command(*, result: Path, at: str | None, table: Path | None, limits: Resourc
     """
     if (at is None) == (table is None):
         raise ConfigError(f"give a point, as in --at {POINT}, or --csv FILE")
-    with held(limits):
-        stored = read_result(result)
-        if table is not None:
-            _table(stored, rows_of(table, stored), table)
-        elif at is not None:
-            point = point_of(at)
-            location = stored.locate(**point)
-            for line in _lines(
-                location, point, fields_of(stored), bool(stability_in_words(stored))
-            ):
-                click.echo(line)
+    stored = read_result(result)
+    if table is not None:
+        _table(stored, rows_of(table, stored), table)
+    elif at is not None:
+        point = point_of(at)
+        location = stored.locate(**point)
+        for line in _lines(location, point, fields_of(stored), bool(stability_in_words(stored))):
+            click.echo(line)

@@ -16,22 +16,22 @@ from ptmcad.answer.boundaries import NONE
 from ptmcad.answer.field import Field
 from ptmcad.cli.commonoptions import (
     Formats,
-    ResourceLimits,
     format_option,
-    held,
     idle_style,
     limit_options,
+    option,
     out_option,
+    report_deadline,
     report_idle,
 )
 from ptmcad.cli.completion import poses, quantity_names
-from ptmcad.cli.drawing import figure, picture, pixels_of, style_options
+from ptmcad.cli.drawing import pixels_for, style_options, writer
 from ptmcad.cli.progress import ProgressBar
 from ptmcad.cli.slices import question_of, slice_options
 from ptmcad.cli.storedresults import made_map, stored_in, stored_map, tolerance_option
 from ptmcad.errors import ConfigError, PtmcadError, shown_path
 from ptmcad.options import Options
-from ptmcad.process.output import check_writable, text_writer, write_files
+from ptmcad.process.output import check_writable, write_files
 from ptmcad.question.config import slice_from_typed
 from ptmcad.question.config.typed import Typed
 from ptmcad.question.slice import Slice
@@ -48,18 +48,32 @@ said.
 
 @click.command("map")
 @slice_options
-@click.option("--value", default="energy", show_default=True, metavar="QUANTITY", shell_complete=quantity_names,
-              help="energy, stiffness, barrier, force:SPRING, length:SPRING, angle:UNKNOWN, x:POINT, y:POINT, or an "
-                   "expression in unknowns, parameters and axes.")  # fmt: skip
-@click.option("--pose", default="stable:1", show_default=True, metavar="KIND:N", shell_complete=poses,
-              help="The N-th stable, unstable, saddle, maximum or pose (any), in the order of `ptmcad solve`: stable "
-                   "ones first, then by energy.")  # fmt: skip
-@click.option("--pixels", callback=pixels_of, default="400x400", show_default=True, metavar="NxM",
-              help="Columns and rows.")  # fmt: skip
-@click.option("--contours", type=click.IntRange(0, 50), default=8, show_default=True,
-              help="About so many contour lines; 0 for none.")  # fmt: skip
-@click.option("--checks", type=click.IntRange(0, 100_000), default=50, show_default=True,
-              help="Random pixels that are compared with exact poses.")  # fmt: skip
+@option(
+    "--value",
+    "energy, stiffness, barrier, force:SPRING, length:SPRING, angle:UNKNOWN, x:POINT, y:POINT, or an "
+    "expression in unknowns, parameters and axes.",
+    "QUANTITY",
+    default="energy",
+    shell_complete=quantity_names,
+)
+@option(
+    "--pose",
+    "The N-th stable, unstable, saddle, maximum or pose (any), in the order of `ptmcad solve`: stable "
+    "ones first, then by energy.",
+    "KIND:N",
+    default="stable:1",
+    shell_complete=poses,
+)
+@option("--pixels", "Columns and rows.", "NxM", read=pixels_for, default="400x400")
+@option(
+    "--contours", "About so many contour lines; 0 for none.", type=click.IntRange(0, 50), default=8
+)
+@option(
+    "--checks",
+    "Random pixels that are compared with exact poses.",
+    type=click.IntRange(0, 100_000),
+    default=50,
+)
 @tolerance_option
 @style_options
 @out_option
@@ -78,7 +92,7 @@ def command(
     dpi: int,
     out: Path,
     formats: Formats,
-    limits: ResourceLimits,
+    timeout: float | None,
 ) -> None:
     """Colour the window by a quantity of one equilibrium.
 
@@ -105,13 +119,15 @@ def command(
     stem = f"{slice.name}-{_slug(value)}-{_slug(pose)}"
     names = tuple(f"{stem}.{kind}" for kind in formats)
     check_writable(out, names)
-    with held(limits), ProgressBar() as progress:
+    report_deadline(timeout)
+    with ProgressBar() as progress:
+        from ptmcad.show import data
         from ptmcad.workbench.fields.quantityfield import expect_somewhere, field_of, request_of
 
         request = request_of(
             slice, value, pose
         )  # what means nothing is refused before anything is computed
-        options = Options(areas=False, progress=progress, timeout=limits.timeout)
+        options = Options(areas=False, progress=progress, timeout=timeout)
         result = stored or made_map(slice, options, tolerance)
         expect_somewhere(result, request[1])
         with stored_in(asked.config if stored else None):
@@ -119,16 +135,14 @@ def command(
             _expect_values(field)
             boundaries = cache(result.boundaries)
 
-            def make() -> Any:
+            def make(kind: str) -> Any:
+                if kind in DATA:
+                    return data.field_csv(field) if kind == "csv" else data.field_npz(field)
                 return render.field_figure(result, field, boundaries(), contours, dpi, style)
 
-            writers = {
-                name: picture(name, partial(_tabulate, field))
-                if name.endswith(DATA)
-                else figure(name, make, dpi=dpi, style=style)
-                for name in names
-            }
-            written = write_files(out, writers)
+            files = zip(names, formats, strict=True)
+            how = {"dpi": dpi, "style": style}
+            written = write_files(out, {n: writer(n, partial(make, k), **how) for n, k in files})
     click.echo(question_of(slice))
     for path in written:
         click.echo(shown_path(path))
@@ -164,15 +178,6 @@ def _report(field: Field) -> None:
 def _slug(text: str) -> str:
     """A text as a part of a file's name."""
     return re.sub(r"[^A-Za-z0-9]+", "-", text).strip("-")[:60] or "value"
-
-
-def _tabulate(field: Field, path: Path) -> None:
-    from ptmcad.show.data import field_csv, field_npz
-
-    if path.suffix == ".csv":
-        text_writer(field_csv(field))(path)
-    else:
-        path.write_bytes(field_npz(field))
 
 
 def _expect_values(field: Field) -> None:

@@ -9,9 +9,9 @@ from pathlib import Path
 
 import click
 
-from ptmcad.cli.commonoptions import PATH
+from ptmcad.cli.commonoptions import PATH, option
 from ptmcad.cli.completion import mechanisms as known_mechanisms
-from ptmcad.cli.drawing import figure
+from ptmcad.cli.drawing import writer
 from ptmcad.errors import ConfigError, quoted
 from ptmcad.model import Model
 from ptmcad.process.output import check_writable, write_files
@@ -69,7 +69,7 @@ def description(model: Model) -> str:
 
 @click.command("mechanisms")
 @click.argument("names", nargs=-1, shell_complete=known_mechanisms)
-@click.option("--out", type=PATH, help="Folder for drawings, NAME.svg for each mechanism.")
+@option("--out", "Folder for drawings, NAME.svg for each mechanism.", type=PATH)
 def command(*, names: tuple[str, ...], out: Path | None) -> None:
     """List the built-in mechanisms, with parameters and a drawing, and the shipped records; or the
     mechanisms of NAMES.
@@ -87,7 +87,7 @@ def command(*, names: tuple[str, ...], out: Path | None) -> None:
     if out is not None:
         mechanisms = filter(None, (model.drawable for model in models))
         drawn = {
-            (name := f"{m.name}.svg"): figure(name, partial(render.draw_mechanism, m))
+            (name := f"{m.name}.svg"): writer(name, partial(render.draw_mechanism, m))
             for m in mechanisms
         }
         check_writable(out, tuple(drawn))

@@ -3,28 +3,26 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from fractions import Fraction
+from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import click
 
-from ptmcad.answer.boundarysurface import BoundarySurface
-from ptmcad.answer.family import FamilyMap
 from ptmcad.answer.poses import Poses
 from ptmcad.answer.regionmap import RegionMap, Status
 from ptmcad.cli.commonoptions import (
     PATH,
     Formats,
     Idle,
-    ResourceLimits,
     file_option,
     gathered,
-    held,
     idle_drawing,
     limit_options,
+    option,
     report_idle,
     result_argument,
 )
@@ -34,10 +32,10 @@ from ptmcad.cli.drawing import (
     PICTURES,
     DrawingOptions,
     drawing_options,
-    figure,
     names_of,
+    writer,
 )
-from ptmcad.cli.familyfiles import mesh_writers, picture_writers, read_family_file
+from ptmcad.cli.familyfiles import family_writers, names_of_family, read_family_file
 from ptmcad.cli.locate import point_of, rows_of
 from ptmcad.cli.progress import ProgressBar
 from ptmcad.cli.storedresults import kind_of, read_result, stored_in
@@ -212,14 +210,14 @@ def _with_points(stored: RegionMap, drawing: DrawingOptions, added: _Added) -> D
     return drawing._replace(poses=tuple((place, poses_at(stored, place)) for place in chosen))
 
 
-def _idle(result: Path, drawing: DrawingOptions, added: _Added) -> tuple[Idle, ...]:
+def _idle(is_family: bool, drawing: DrawingOptions, added: _Added) -> tuple[Idle, ...]:
     """Options that a picture of more than a map does not heed."""
-    several = added.compare is not None or kind_of(result) == "family"
+    several = is_family or added.compare is not None
     below = several and drawing.style.legend is LegendPlace.RIGHT
     return (
         ("samples", several or bool(added.at), "sample points are drawn on a map alone"),
         ("legend", below, "a legend of several maps is below them"),
-        ("surface", kind_of(result) != "family", "this is one map: a surface is of a family"),
+        ("surface", not is_family, "this is one map: a surface is of a family"),
     )
 
 
@@ -238,47 +236,38 @@ def _check_compared(added: _Added, formats: Formats) -> None:
 
 
 def _compared(
-    stored: RegionMap,
-    result: Path,
-    other: Path,
-    stem: str,
-    formats: Formats,
-    drawing: DrawingOptions,
-) -> Mapping[str, Writer]:
-    """A writer for each picture of two maps, after their difference has been printed.
+    first: RegionMap, result: Path, second: RegionMap, other: Path
+) -> Callable[[DrawingOptions], Any]:
+    """What draws the difference of two maps, which is printed.
 
     Raises
     ------
     ConfigError
-        With the file of the map that cannot be read or contradicts itself.
+        With the file of the map that contradicts itself.
     """
     from ptmcad.ask.comparison import compare
 
-    second = read_result(other)
     try:
-        found = compare(stored, second)
+        found = compare(first, second)
     except ConfigError as error:
         blamed = {"first": result, "second": other}.get(error.key or "")
         if blamed is not None:
             raise ConfigError(error.message, file=str(blamed)) from error
         raise ConfigError(error.message, key="--compare") from error
-    for path, each in ((result, stored), (other, second)):
+    for path, each in ((result, first), (other, second)):
         with stored_in(path):
             render.traced(each)  # so that of two maps the one that contradicts itself is named
     click.echo(f"A is {shown_path(result)}; B is {shown_path(other)}")
     for line in render.difference_words(found):
         click.echo(line)
-    how = {"dpi": drawing.dpi, "style": drawing.style}
-    return {
-        n: figure(n, lambda: render.comparison_figure(found, **how), **how)
-        for n in names_of(stem, formats)
-    }
+    return lambda drawing: render.comparison_figure(found, dpi=drawing.dpi, style=drawing.style)
 
 
-def _plot_family(
+def _of_family(
     result: Path, folder: Path, formats: Formats, drawing: DrawingOptions, added: _Added
-) -> None:
-    if added._replace(surface=False) != _Added(None, (), None, False):
+) -> dict[str, Writer]:
+    """A writer for each picture and mesh of a family."""
+    if added.overlay or added.at or added.compare:
         raise ConfigError(
             "points and comparisons are for one map: give a member's file", file=str(result)
         )
@@ -287,52 +276,66 @@ def _plot_family(
         raise ConfigError(
             f"of a family there are pictures and meshes only: {known}", key="--format"
         )
-    family = read_family_file(result)
-    meshes, pictures = (
-        tuple(kind for kind in formats if kind in known) for known in (MESHES, PICTURES)
-    )
-    surface = _surface(family, result) if meshes or added.surface else None
-    writers = picture_writers(
-        family, result.stem, pictures, drawing, surface if added.surface else None
-    )
-    if surface is not None:
+    family, surface = read_family_file(result), None
+    if added.surface or any(kind in MESHES for kind in formats):
+        from ptmcad.workbench.boundarymesh import boundary_surface
+
+        # from members that are computed for it
+        with blamed("", result), ProgressBar() as progress:
+            surface = boundary_surface(family, progress=progress)
         click.echo(f"boundary surface: {surface.words()}")
-        writers |= mesh_writers(surface, result.stem, meshes)
-    check_writable(folder, tuple(writers))
-    for path in write_files(folder, writers):
-        click.echo(shown_path(path))
+    files = names_of_family(result.stem, formats)
+    check_writable(folder, tuple(files))
+    return family_writers(family, files, drawing, surface, added.surface)
 
 
-def _surface(family: FamilyMap, file: Path) -> BoundarySurface:
-    """The boundary surface of a stored family, from members that are computed for it."""
-    from ptmcad.workbench.boundarymesh import boundary_surface
-
-    with blamed(file=file), ProgressBar() as progress:
-        return boundary_surface(family, progress=progress)
+def _of_map(
+    result: Path, folder: Path, formats: Formats, drawing: DrawingOptions, added: _Added
+) -> dict[str, Writer]:
+    """A writer for each picture and table of a map, or of two that are compared."""
+    if meshes := [kind for kind in formats if kind in MESHES]:
+        raise ConfigError(
+            f"{meshes[0]} is for a family's boundary surface, and this is one map", key="--format"
+        )
+    stored, other = read_result(result), added.compare
+    stem = result.stem if other is None else f"{result.stem}-and-{other.stem}"
+    portable_file(f"{stem}.{formats[0]}", "RESULT")
+    _check_compared(added, formats)
+    names = names_of(stem, formats)
+    check_writable(folder, names)
+    drawing = _with_points(stored, drawing, added)
+    if (wide := drawing.style.wide) is not None and (added.at or other is not None):
+        # what needs more room than a journal's column has gets both
+        click.echo(f"over two columns, {wide:.3g} inches wide, which --size changes", err=True)
+    if other is None:
+        return drawing.writers(stored, stem, formats)
+    draw = _compared(stored, result, read_result(other), other)
+    how = {"dpi": drawing.dpi, "style": drawing.style}
+    return {name: writer(name, partial(draw, drawing), **how) for name in names}
 
 
 @click.command("plot")
 @result_argument
-@click.option("--out", type=PATH, help="Folder for the files.  [default: that of RESULT]")
+@option("--out", "Folder for the files.  [default: that of RESULT]", type=PATH)
 @drawing_options((*PICTURES, *DATA, *MESHES), "png", "What to make")
 @file_option(
     "--overlay", ".csv", "FILE",
     "A CSV file of points to draw on the map: columns named like the axes, and label and count if there are.",
 )  # fmt: skip
-@click.option(
+@option(
     "--at",
+    "Draw the stable poses at a point beside the map, with a line to it. Repeatable.",
+    "NAME=VALUE,NAME=VALUE",
     multiple=True,
-    metavar="NAME=VALUE,NAME=VALUE",
-    help="Draw the stable poses at a point beside the map, with a line to it. Repeatable.",
 )
 @file_option(
     "--compare", ".json", "OTHER",
     "Draw RESULT, another map of the same window, and where their counts differ; print how large that is.",
 )  # fmt: skip
-@click.option(
-    "--surface", is_flag=True,
-    help="Of a family with its changes: draw NAME-3d as the surface between regions of different counts.",
-)  # fmt: skip
+@option(
+    "--surface",
+    "Of a family with its changes: draw NAME-3d as the surface between regions of different counts.",
+)
 @limit_options
 @gathered(added=_Added)
 def command(
@@ -342,7 +345,6 @@ def command(
     formats: Formats,
     drawing: DrawingOptions,
     added: _Added,
-    limits: ResourceLimits,
 ) -> None:
     """Draw RESULT, a JSON file of `ptmcad classify`, or write it as numbers.
 
@@ -357,32 +359,11 @@ def command(
         ptmcad plot slice-L2-rho.json --compare heavier.json
         ptmcad plot loads.json --surface --format pdf,ply
     """
-    report_idle((*idle_drawing(formats), *_idle(result, drawing, added)))
-    with held(limits):
-        if kind_of(result) == "family":
-            _plot_family(result, result.parent if out is None else out, formats, drawing, added)
-            return
-        if meshes := [kind for kind in formats if kind in MESHES]:
-            raise ConfigError(
-                f"{meshes[0]} is for a family's boundary surface, and this is one map",
-                key="--format",
-            )
-        stored = read_result(result)
-        folder = result.parent if out is None else out
-        stem = result.stem if added.compare is None else f"{result.stem}-and-{added.compare.stem}"
-        portable_file(f"{stem}.{formats[0]}", "RESULT")
-        _check_compared(added, formats)
-        check_writable(folder, names_of(stem, formats))
-        drawing = _with_points(stored, drawing, added)
-        if (wide := drawing.style.wide) is not None and (added.at or added.compare is not None):
-            # what needs more room than a journal's column has gets both
-            click.echo(f"over two columns, {wide:.3g} inches wide, which --size changes", err=True)
-        if added.compare is not None:
-            pictures = _compared(stored, result, added.compare, stem, formats, drawing)
-            with ProgressBar():
-                written = write_files(folder, pictures)
-        else:
-            with stored_in(result), ProgressBar():
-                written = write_files(folder, drawing.writers(stored, stem, formats))
-    for path in written:
-        click.echo(shown_path(path))
+    is_family = kind_of(result) == "family"
+    report_idle((*idle_drawing(formats), *_idle(is_family, drawing, added)))
+    make = _of_family if is_family else _of_map
+    writers = make(result, out or result.parent, formats, drawing, added)
+    alone = not is_family and added.compare is None
+    with stored_in(result if alone else None), ProgressBar():
+        for path in write_files(out or result.parent, writers):
+            click.echo(shown_path(path))

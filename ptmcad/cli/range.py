@@ -14,28 +14,26 @@ from click.core import ParameterSource
 
 from ptmcad.cli.commonoptions import (
     Formats,
-    ResourceLimits,
+    check_output,
     compile_certified,
     format_option,
     gathered,
-    held,
-    idle_output,
     limit_options,
     name_option,
+    option,
     out_option,
     record_argument,
-    report_idle,
+    report_deadline,
 )
-from ptmcad.cli.completion import names, pair_of_names, point, quantity_names
+from ptmcad.cli.completion import names, pair_of_names, quantity_names
 from ptmcad.cli.drawing import report_written, write_answer
-from ptmcad.cli.locate import point_of
+from ptmcad.cli.locate import point_option
 from ptmcad.cli.progress import ProgressBar
 from ptmcad.cli.range_answers import RangeRequest, answer, is_enclosed, request_codec
 from ptmcad.cli.slices import LINE, range_option, set_option
 from ptmcad.errors import ConfigError
 from ptmcad.model import ptm
-from ptmcad.process.output import check_writable
-from ptmcad.question.config import file_name, names_in_record, slice_from_options
+from ptmcad.question.config import names_in_record, slice_from_options
 from ptmcad.question.config.typed import Typed
 from ptmcad.question.shipped import FIRST, SECOND
 from ptmcad.question.slice import Slice
@@ -113,19 +111,17 @@ def request_of(along: str, at: Mapping[str, str], **asked: Any) -> RangeRequest:
     ConfigError
         For an option that needs another one.
     """
-    over, quantities = asked["over"] is not None, tuple(dict.fromkeys(asked["quantities"]))
-    for key, given in (("--path", asked["start"]), ("--quantity", quantities or None)):
-        if given is not None and not at:
+    is_over, quantities = asked["over"] is not None, tuple(dict.fromkeys(asked["quantities"]))
+    for key, given in (("--path", asked["start"] is not None), ("--quantity", quantities)):
+        if given and not at:
             raise ConfigError(
                 f"needs the value of the other axis too, as in --at {SECOND}=3/2", key=key
             )
-    start = None if asked["start"] is None else number_for("--path", asked["start"])
-    path = {"over": over, "start": start, "quantities": quantities}
-    request = RangeRequest(along=along, at=at, **{**asked, **path})
-    if (
-        not over
-        and click.get_current_context().get_parameter_source("rows") is not ParameterSource.DEFAULT
-    ):
+    request = RangeRequest(
+        along=along, at=at, **{**asked, "over": is_over, "quantities": quantities}
+    )
+    source = click.get_current_context().get_parameter_source("rows")
+    if not is_over and source is not ParameterSource.DEFAULT:
         raise ConfigError(
             "is for the table over the other axis: give --over NAME too", key="--rows"
         )
@@ -136,72 +132,59 @@ def request_of(along: str, at: Mapping[str, str], **asked: Any) -> RangeRequest:
 
 @click.command("range")
 @record_argument()
-@click.option(
-    "--along",
-    required=True,
-    metavar="NAME",
-    shell_complete=names,
-    help="The parameter or axis that varies.",
+@option(
+    "--along", "The parameter or axis that varies.", "NAME", required=True, shell_complete=names
 )
-@click.option(
-    "--at",
-    "at",
-    metavar="NAME=VALUE,...",
-    shell_complete=point,
-    help="What is fixed: the slice's other axis, any parameters.",
-)
-@click.option(
+@point_option("What is fixed: the slice's other axis, any parameters.")
+@option(
     "--slice",
-    metavar="X,Y",
+    "The slice's two axes, where a name is no parameter.",
+    "X,Y",
     shell_complete=pair_of_names,
-    help="The slice's two axes, where a name is no parameter.",
 )
 @set_option
 @range_option
-@click.option(
-    "--digits",
-    type=click.IntRange(1, 1000),
-    default=10,
-    show_default=True,
-    help="Digits of decimals.",
-)
+@option("--digits", "Digits of decimals.", type=click.IntRange(1, 1000), default=10)
 @out_option
 @name_option("NAME-range")
 @format_option(FORMATS)
-@click.option(
+@option(
     "--over",
-    metavar="NAME",
+    "The axis over which to tabulate the operation range's width.",
+    "NAME",
     shell_complete=names,
-    help="The axis over which to tabulate the operation range's width.",
 )
-@click.option(
-    "--rows",
-    type=click.IntRange(1, 1000),
-    default=41,
-    show_default=True,
-    help="Rows of that table.",
+@option("--rows", "Rows of that table.", type=click.IntRange(1, 1000), default=41)
+@option(
+    "--path start", "Follow stable poses from this value until they snap.", "VALUE", read=number_for
 )
-@click.option(
-    "--path", "start", metavar="VALUE", help="Follow stable poses from this value until they snap."
+@option(
+    "--pose",
+    "Which pose, as ptmcad solve numbers them.  [default: every stable one]",
+    "N",
+    click.IntRange(min=1),
 )
-@click.option("--pose", type=click.IntRange(min=1), metavar="N",
-              help="Which pose, as ptmcad solve numbers them.  [default: every stable one]")  # fmt: skip
-@click.option("--quantity", "quantities", multiple=True, metavar="NAME", shell_complete=quantity_names,
-              help="Draw all branches, stable and unstable, of a quantity: an unknown, energy, stiffness (the least "
-                   "eigenvalue), force:SPRING, length:SPRING, angle:UNKNOWN, x:POINT or y:POINT. "
-                   "Repeatable.")  # fmt: skip
+@option(
+    "--quantity quantities",
+    "Draw all branches, stable and unstable, of a quantity: an unknown, energy, stiffness (the least "
+    "eigenvalue), force:SPRING, length:SPRING, angle:UNKNOWN, x:POINT or y:POINT. "
+    "Repeatable.",
+    "NAME",
+    multiple=True,
+    shell_complete=quantity_names,
+)
 @limit_options
 @gathered(typed=(LINE, Typed), asked=(REQUEST, dict))
 def command(
     *,
     typed: Typed,
     along: str,
-    at: str | None,
+    at: dict[str, str] | None,
     asked: dict[str, Any],
     out: Path,
     name: str | None,
     formats: Formats,
-    limits: ResourceLimits,
+    timeout: float | None,
 ) -> None:
     """Find the intervals of constant count along one axis, and the operation range, where the most equilibria are stable.
 
@@ -221,32 +204,23 @@ def command(
         ptmcad range --along rho --over L2 --range L2=0:2 --at F3=-10,F4=-10
         ptmcad range fig4 --along rho --at L2=3/2 --quantity th1 --format png
     """
-    slice, fixed = slice_and_line(typed, along, {} if at is None else point_of(at), asked["over"])
+    slice, fixed = slice_and_line(typed, along, at or {}, asked["over"])
     request = request_of(along, fixed, **asked)
-    stem = f"{slice.name}-range" if name is None else file_name(name, "--name")
-    suffixes = [suffix for suffix in formats if suffix != "json"]
-    with held(limits):
-        enclosed = is_enclosed(slice, request)
-        parts = _parts(request)
-        pictures = {f"{stem}{part}.{suffix}": part for part in parts for suffix in suffixes}
-        names = [*pictures, *([f"{stem}.json"] if "json" in formats else [])]
-        if names:
-            check_writable(out, tuple(names))
-        report_idle(idle_output(names))
-        with ProgressBar() as progress:
-            if enclosed:
-                compile_certified(limits.timeout, progress)
-            progress("intervals ...", 0, 1)
-            text, found, makers = answer(slice, request)
-        click.echo(text)
-        if names:
-            write_answer(
-                out,
-                names,
-                lambda name: makers[pictures[name]](),
-                partial(_document, slice, request, found),
-            )
-            report_written(out, names)
+    stem = name or f"{slice.name}-range"
+    report_deadline(timeout)
+    kinds = [kind for kind in formats if kind != "json"]
+    pictures = {f"{stem}{part}.{kind}": part for part in _parts(request) for kind in kinds}
+    names = (*pictures, *[f"{stem}.json"] * ("json" in formats))
+    check_output(out, names)
+    with ProgressBar() as progress:
+        if is_enclosed(slice, request):
+            compile_certified(timeout, progress)
+        progress("intervals ...", 0, 1)
+        text, found, makers = answer(slice, request, progress)
+    click.echo(text)
+    document = partial(_document, slice, request, found)
+    write_answer(out, names, lambda name: makers[pictures[name]](), document)
+    report_written(out, names)
 
 
 def _document(slice: Slice, request: RangeRequest, parts: Mapping[str, Any]) -> str:

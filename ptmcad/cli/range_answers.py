@@ -12,8 +12,8 @@ from fractions import Fraction
 from functools import cache, partial
 from typing import TYPE_CHECKING, Any
 
-from ptmcad.cli.progress import ProgressBar
 from ptmcad.cli.slices import question_of
+from ptmcad.options import Progress
 from ptmcad.question.counts import USUAL
 from ptmcad.question.slice import Slice
 from ptmcad.show import render
@@ -64,7 +64,7 @@ def request_codec() -> Codec[RangeRequest]:
 
 
 def answer(
-    slice: Slice, request: RangeRequest
+    slice: Slice, request: RangeRequest, progress: Progress
 ) -> tuple[str, dict[str, Any], dict[str, Callable[[], Any]]]:
     """Compute all that is asked for.
 
@@ -83,7 +83,7 @@ def answer(
     counted = slice if slice.count.kind.predicate is None else replace(slice, count=USUAL)
     texts, parts = [question_of(counted)], dict[str, Any]()
     pictures = dict[str, Callable[[], Any]]()
-    for found, text, end, make in _answers(slice, request):
+    for found, text, end, make in _answers(slice, request, progress):
         texts.append(text)
         parts |= rangedocument.part(found, request.digits)
         pictures[end] = make
@@ -91,7 +91,7 @@ def answer(
 
 
 def _answers(
-    slice: Slice, request: RangeRequest
+    slice: Slice, request: RangeRequest, progress: Progress
 ) -> Iterator[tuple[Any, str, str, Callable[[], Any]]]:
     """Whatever is asked for, with its table, the end of its picture's name, and what draws that."""
     from ptmcad.show.ranges import linetable, pathtable
@@ -106,8 +106,7 @@ def _answers(
     if request.over:
         from ptmcad.ask.lines.along import operation_widths
 
-        with ProgressBar() as progress:
-            found = operation_widths(slice, along, request.rows, digits, progress)
+        found = operation_widths(slice, along, request.rows, digits, progress)
         text = linetable.width_table(found, digits)
         yield found, text, "-over", partial(_drawn, "draw_widths", slice, found)
 
@@ -122,15 +121,13 @@ def _answers(
     if request.start is not None:
         from ptmcad.ask.lines.follower import pose_paths
 
-        with ProgressBar() as progress:
-            found = pose_paths(slice, along, at, request.start, request.pose, progress)
+        found = pose_paths(slice, along, at, request.start, request.pose, progress)
         text = pathtable.path_table(found, min(digits, 10))
         yield found, text, "-path", partial(_paths_and_branches, slice, found, line)
     if request.quantities:
         from ptmcad.ask.lines.diagram import branch_diagram
 
-        with ProgressBar() as progress:
-            found = branch_diagram(slice, line(), request.quantities, progress)
+        found = branch_diagram(slice, line(), request.quantities, progress)
         text = pathtable.branch_table(found)
         yield found, text, "-branches", partial(_drawn, "draw_branches", slice, found)
 

@@ -8,15 +8,13 @@ import click
 
 from ptmcad.cli.commonoptions import (
     PATH,
-    ResourceLimits,
-    held,
     limit_options,
-    reading,
+    option,
     result_argument,
 )
 from ptmcad.cli.progress import ProgressBar
 from ptmcad.cli.storedresults import read_result
-from ptmcad.errors import ConfigError, shown_path
+from ptmcad.errors import blamed, shown_path
 from ptmcad.process.output import check_writable, text_writer, write_files
 from ptmcad.question.config import file_name, portable_file
 
@@ -27,21 +25,16 @@ def _file_name(key: str, value: str) -> str:
 
 @click.command("report")
 @result_argument
-@click.option("--out", type=PATH, help="Folder for the page.  [default: that of RESULT]")
-@click.option(
-    "--name",
-    callback=reading(_file_name),
-    metavar="NAME",
-    help="Name of the page.  [default: that of RESULT]",
+@option("--out", "Folder for the page.  [default: that of RESULT]", type=PATH)
+@option("--name", "Name of the page.  [default: that of RESULT]", "NAME", read=_file_name)
+@option(
+    "--bench",
+    "A measurement of error against time to show.  "
+    "[default: NAME.error-time.json beside RESULT, if there is one]",
+    "FILE",
+    PATH,
 )
-@click.option("--bench", type=PATH, metavar="FILE",
-              help="A measurement of error against time to show.  "
-                   "[default: NAME.error-time.json beside RESULT, if there is one]")  # fmt: skip
-@click.option(
-    "--no-timings",
-    is_flag=True,
-    help="Leave run times out, so that the page is the same every time.",
-)
+@option("--no-timings", "Leave run times out, so that the page is the same every time.")
 @limit_options
 def command(
     *,
@@ -50,7 +43,6 @@ def command(
     name: str | None,
     bench: Path | None,
     no_timings: bool,
-    limits: ResourceLimits,
 ) -> None:
     """Write RESULT, a JSON file of `ptmcad classify`, as one HTML page.
 
@@ -62,20 +54,18 @@ def command(
         ptmcad classify --slice L2,rho --format json
         ptmcad report slice-L2-rho.json
     """
-    with held(limits), ProgressBar():
+    with ProgressBar():
         stored = read_result(result)
-        folder = result.parent if out is None else out
+        folder = out or result.parent
         file = portable_file(f"{name or result.stem}.html", "--name")
         check_writable(folder, (file,))
         from ptmcad.show.report import page
         from ptmcad.show.report.error_curve import read_error_curve
 
         beside = result.with_name(f"{stored.slice.name}.error-time.json")
-        curve = bench if bench is not None else beside if beside.is_file() else None
+        curve = bench or (beside if beside.is_file() else None)
         errors = None if curve is None else read_error_curve(curve)
-        try:
+        with blamed(file=result):
             text = page(stored, timings=not no_timings, errors=errors)
-        except ConfigError as error:
-            raise ConfigError(error.message, key=error.key, file=str(result)) from error
         (written,) = write_files(folder, {file: text_writer(text)})
     click.echo(f"{shown_path(written)}  {len(text.encode()) / 1e6:.2f} MB")

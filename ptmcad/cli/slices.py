@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 
 import click
 
-from ptmcad.cli.commonoptions import F, gathered, record_argument
+from ptmcad.cli.commonoptions import F, gathered, option, record_argument, together
 from ptmcad.cli.completion import mechanisms, pair_of_names, settings
 from ptmcad.errors import ConfigError, HypothesisError, PtmcadError, shown
 from ptmcad.model import Model
@@ -83,22 +83,20 @@ def _placed(error: ConfigError | HypothesisError, asked: Typed) -> PtmcadError:
         return error
 
 
-range_option = click.option(
-    "--range",
-    "ranges",
-    multiple=True,
-    metavar="NAME=LO:HI",
-    shell_complete=settings,
-    help="The range of an axis.",
+range_option = option(
+    "--range ranges", "The range of an axis.", "NAME=LO:HI", multiple=True, shell_complete=settings
 )
-set_option = click.option(
-    "--set", "sets", multiple=True, metavar="NAME=VALUE", shell_complete=settings,
-    help="Fix a parameter: a number or an expression.",
-)  # fmt: skip
+set_option = option(
+    "--set sets",
+    "Fix a parameter: a number or an expression.",
+    "NAME=VALUE",
+    multiple=True,
+    shell_complete=settings,
+)
 
 
-engine_option = click.option(
-    "--engine", type=click.Choice(["auto", "exact", "certified"]), default="auto", show_default=True
+engine_option = option(
+    "--engine", "", type=click.Choice(["auto", "exact", "certified"]), default="auto"
 )
 
 
@@ -108,18 +106,15 @@ def slice_options(command: F) -> F:
 
     What an engine finds wrong with the question is reported with its place in the record.
     """
-    command = gathered(asked=((*LINE, "mechanism"), Typed))(_with_places(command))
-    for add in (
-        range_option,
-        set_option,
-        click.option("--slice", metavar="X,Y", shell_complete=pair_of_names,
-                     help="The two axes, the horizontal one first."),
-        click.option("--mechanism", metavar="NAME|FILE", shell_complete=mechanisms,
-                     help="Without CONFIG: the mechanism.  [default: ptm]"),
+    return together(
         record_argument(),
-    ):  # fmt: skip
-        command = add(command)
-    return command
+        option("--mechanism", "Without CONFIG: the mechanism.  [default: ptm]", "NAME|FILE", shell_complete=mechanisms),
+        option("--slice", "The two axes, the horizontal one first.", "X,Y", shell_complete=pair_of_names),
+        set_option,
+        range_option,
+        gathered(asked=((*LINE, "mechanism"), Typed)),
+        _with_places,
+    )(command)  # fmt: skip
 
 
 MAX_VALUE = 40

@@ -4,35 +4,30 @@ from __future__ import annotations
 
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
 
 import click
 
-from ptmcad.answer.poses import MAX_DIGITS, Poses
+from ptmcad.answer.poses import MAX_DIGITS
 from ptmcad.answer.regionmap import Status
 from ptmcad.cli.commonoptions import (
     Formats,
-    ResourceLimits,
+    check_output,
     clock_stopped,
     compile_certified,
     format_option,
-    held,
-    idle_output,
     limit_options,
     name_option,
+    option,
     out_option,
     record_argument,
-    report_idle,
 )
-from ptmcad.cli.completion import point
 from ptmcad.cli.drawing import report_written, write_answer
-from ptmcad.cli.locate import point_of
+from ptmcad.cli.locate import point_option
 from ptmcad.cli.progress import ProgressBar
 from ptmcad.cli.slices import set_option
 from ptmcad.errors import ConfigError
 from ptmcad.model import Model
-from ptmcad.process.output import check_writable
-from ptmcad.question.config import file_name, point_from_options, units_of
+from ptmcad.question.config import point_from_options, units_of
 from ptmcad.question.shipped import POINT
 from ptmcad.show import render
 from ptmcad.show.drawable import no_drawing, no_landscape
@@ -41,84 +36,54 @@ FORMATS = ("table", "json", "png", "svg", "pdf")
 DIGITS = 10
 
 
-def file_names(name: str, formats: Formats, landscape: bool) -> tuple[str, ...]:
-    """The files that are written; the JSON file, which vouches for the pictures, comes last."""
-    pictures = [suffix for suffix in formats if suffix not in ("table", "json")]
-    names = [f"{name}.{suffix}" for suffix in pictures]
-    if landscape:
-        names += [f"{name}-landscape.{suffix}" for suffix in pictures or ["png"]]
-    return (*names, *([f"{name}.json"] if "json" in formats else []))
-
-
-def drawable(model: Model, names: tuple[str, ...], start: str, landscape: bool) -> tuple[str, ...]:
-    """The files that can be written; the landscape may be asked for beside what there is, and is
-    refused at the end.
+def pictures_of(model: Model, stem: str, formats: Formats, landscape: bool) -> dict[str, str]:
+    """The pictures that can be drawn, each with the function of `render` that draws it; a landscape
+    may be asked for beside what there is, and is refused at the end.
 
     Raises
     ------
     ConfigError
         For pictures of a system's poses, where no landscape is asked for.
     """
-    landscapes = tuple(name for name in names if name.startswith(f"{start}-landscape."))
-    if model.whole is None:
-        kept = tuple(name for name in names if name.endswith(".json") or name in landscapes)
-        if kept != names and not landscape:
-            further = ", or --landscape" if not no_landscape(model) else ""
-            raise ConfigError(
-                f"{no_drawing(model)}; ask for table or json{further}", key="--format"
-            )
-        names = kept
-    return tuple(name for name in names if name not in landscapes) if no_landscape(model) else names
-
-
-def save(poses: Poses, folder: Path, name: str, names: tuple[str, ...]) -> None:
-    """Write the files of these names, all or none.
-
-    Raises
-    ------
-    OutputError
-        When a file cannot be written.
-    """
-    landscape = f"{name}-landscape."
-
-    def make(file: str) -> Any:
-        return (render.draw_landscape if file.startswith(landscape) else render.draw_poses)(poses)
-
-    write_answer(folder, names, make, poses.to_json)
+    kinds = [kind for kind in formats if kind not in ("table", "json")]
+    refused, found = no_landscape(model), dict[str, str]()
+    if model.whole is not None:
+        found |= {f"{stem}.{kind}": "draw_poses" for kind in kinds}
+    elif kinds and not landscape:
+        further = "" if refused else ", or --landscape"
+        raise ConfigError(f"{no_drawing(model)}; ask for table or json{further}", key="--format")
+    if landscape and not refused:
+        found |= {f"{stem}-landscape.{kind}": "draw_landscape" for kind in kinds or ["png"]}
+    return found
 
 
 @click.command("solve")
 @record_argument()
-@click.option(
-    "--at",
-    "at",
-    metavar="NAME=VALUE,...",
-    shell_complete=point,
-    help="The point: parameters, or axes of CONFIG, exact numbers.",
-)
+@point_option("The point: parameters, or axes of CONFIG, exact numbers.")
 @set_option
-@click.option("--digits", type=click.IntRange(1, MAX_DIGITS), default=DIGITS, show_default=True, metavar="N",
-              help="Significant digits, all of them right.")  # fmt: skip
+@option(
+    "--digits",
+    "Significant digits, all of them right.",
+    "N",
+    click.IntRange(1, MAX_DIGITS),
+    default=DIGITS,
+)
 @format_option(FORMATS, "What to make, of {}; the table is printed.", "table")
 @out_option
 @name_option("poses")
-@click.option(
-    "--landscape",
-    is_flag=True,
-    help="Draw the energy over one or two unknowns too (NAME-landscape.png).",
-)
+@option("--landscape", "Draw the energy over one or two unknowns too (NAME-landscape.png).")
 @limit_options
 def command(
     *,
     config: Path | None,
-    at: str | None,
+    at: dict[str, str] | None,
     sets: tuple[str, ...],
     digits: int,
     formats: Formats,
     out: Path,
     name: str | None,
     landscape: bool,
-    limits: ResourceLimits,
+    timeout: float | None,
 ) -> int:
     """Find every equilibrium, or solution of a system, at one point, with stability, spring forces and energy.
 
@@ -136,28 +101,22 @@ def command(
     """
     if at is None and not sets and config is None:
         raise ConfigError(f"give a point, as in --at {POINT}")
-    start = "poses" if name is None else file_name(name, "--name")
-    names = file_names(start, formats, landscape)
-    with held(limits):
-        model, parameters = point_from_options(config, {} if at is None else point_of(at), sets)
-        names = drawable(model, names, start, landscape)
-        if names:
-            check_writable(out, names)
-        report_idle(idle_output(names))
-        with clock_stopped(
-            limits.timeout
-        ):  # the time that the import takes is not the computation's
-            from ptmcad.ask.solving import needs_intervals, poses_at
-        with ProgressBar() as progress:
-            if needs_intervals(model, parameters):
-                compile_certified(limits.timeout, progress)
-            progress("solutions ...", 0, 1)
-            poses = replace(
-                poses_at(model, parameters, digits),
-                units={} if config is None else units_of(config),
-            )
-            if names:
-                save(poses, out, start, names)
+    model, parameters = point_from_options(config, at or {}, sets)
+    stem = name or "poses"
+    pictures = pictures_of(model, stem, formats, landscape)
+    names = (*pictures, *[f"{stem}.json"] * ("json" in formats))  # which vouches for the pictures
+    check_output(out, names)
+    with clock_stopped(timeout):  # the time that the import takes is not the computation's
+        from ptmcad.ask.solving import needs_intervals, poses_at
+    with ProgressBar() as progress:
+        if needs_intervals(model, parameters):
+            compile_certified(timeout, progress)
+        progress("solutions ...", 0, 1)
+        poses = replace(
+            poses_at(model, parameters, digits),
+            units={} if config is None else units_of(config),
+        )
+        write_answer(out, names, lambda file: getattr(render, pictures[file])(poses), poses.to_json)
     if "table" in formats:
         click.echo(poses.table())
     report_written(out, names)

@@ -12,12 +12,9 @@ from fractions import Fraction
 from pathlib import Path
 from typing import Any, TypeVar
 
-import click
-
 from ptmcad.answer.consistency import check_numbers
 from ptmcad.answer.regionmap import RegionMap
-from ptmcad.cli.commonoptions import clock_stopped, report_idle
-from ptmcad.cli.drawing import share_of
+from ptmcad.cli.commonoptions import clock_stopped, option, report_idle
 from ptmcad.errors import ConfigError, PictureError, PtmcadError, blamed, shown
 from ptmcad.options import Options
 from ptmcad.question.config.typed import Typed
@@ -25,6 +22,7 @@ from ptmcad.question.slice import Slice
 from ptmcad.show.document.mapdocument import FORMAT
 from ptmcad.show.style import PictureStyle
 from ptmcad.text.node import NEWER, is_newer
+from ptmcad.text.parsing import share_for
 from ptmcad.text.textfile import format_named, json_data, read_text
 
 MAX_BYTES = 60_000_000
@@ -177,10 +175,13 @@ def _is_record(text: str) -> bool:
     return not _OF_A_RECORD.isdisjoint(tree.entries)
 
 
-tolerance_option = click.option(
-    "--tolerance", callback=share_of, default="1/100", show_default=True, metavar="EPS",
-    help="With free lengths: the share of the window that may stay undetermined.",
-)  # fmt: skip
+tolerance_option = option(
+    "--tolerance",
+    "With free lengths: the share of the window that may stay undetermined.",
+    "EPS",
+    read=share_for,
+    default="1/100",
+)
 
 
 def stored_map(asked: Typed) -> RegionMap | None:
@@ -200,10 +201,10 @@ def stored_map(asked: Typed) -> RegionMap | None:
         "--range": asked.ranges,
         "--mechanism": asked.mechanism,
     }
-    for option, value in given.items():
+    for name, value in given.items():
         if value:
             raise ConfigError(
-                "a result has its slice already: give the problem record to change it", key=option
+                "a result has its slice already: give the problem record to change it", key=name
             )
     report_idle([("tolerance", True, "the map is made already")])
     return read_result(path)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from functools import partial
 from math import inf
 from pathlib import Path
 from time import perf_counter
@@ -12,17 +11,17 @@ import click
 
 from ptmcad.cli.commonoptions import (
     Formats,
-    ResourceLimits,
     compile_certified,
     format_option,
-    held,
     limit_options,
+    option,
     out_option,
+    report_deadline,
 )
-from ptmcad.cli.drawing import figure, report_written, write_result
+from ptmcad.cli.drawing import report_written, write_answer
 from ptmcad.cli.progress import ProgressBar
 from ptmcad.errors import ConfigError, LimitReached
-from ptmcad.process.output import Writer, check_writable, text_writer
+from ptmcad.process.output import check_writable
 
 if TYPE_CHECKING:
     from ptmcad.studies.stress.case import Case
@@ -44,41 +43,42 @@ def save(found: Row, folder: Path, formats: Formats) -> tuple[str, ...]:
     OutputError
         When a file cannot be written.
     """
-    from ptmcad.studies.stress.campaign import markdown, to_csv, to_json
+    from ptmcad.studies.stress.campaign import draw_stress, markdown, to_csv, to_json
 
     name = NAME if found["complete"] else f"{NAME}.partial"
     texts = {"csv": to_csv, "md": markdown}
-    writers: dict[str, Writer] = {}
-    for suffix in formats:
-        if suffix in texts:
-            writers[f"{name}.{suffix}"] = text_writer(texts[suffix](found))
-        elif suffix not in ("table", "json"):
-            writers[f"{name}.{suffix}"] = figure(f"{name}.{suffix}", partial(_drawn, found))
-    file = f"{name}.json" if "json" in formats else ""
-    if writers or file:
-        write_result(folder, writers, file, to_json(found) if file else "")
-    return (*writers, file) if file else tuple(writers)
 
+    def make(file: str) -> Any:
+        kind = file.rpartition(".")[2]
+        return texts[kind](found) if kind in texts else draw_stress(found["cases"])
 
-def _drawn(found: Row) -> Any:
-    from ptmcad.studies.stress.campaign import draw_stress
-
-    return draw_stress(found["cases"])
+    kinds = [kind for kind in formats if kind not in ("table", "json")]
+    kinds += ["json"] * ("json" in formats)
+    names = tuple(f"{name}.{kind}" for kind in kinds)
+    write_answer(folder, names, make, lambda: to_json(found))
+    return names
 
 
 @click.command("stress")
 @click.argument("names", nargs=-1, metavar="[NAMES]...")
-@click.option("--random", "number", type=click.IntRange(0, 100_000), default=0, show_default=True, metavar="N",
-              help="Run N random extreme cases too, or alone when no name is given.")  # fmt: skip
-@click.option("--seed", type=click.IntRange(0, 2**31), default=1, show_default=True, metavar="N",
-              help="Of the random cases.")  # fmt: skip
-@click.option("--repeats", type=click.IntRange(1, 1000), default=5, show_default=True, metavar="N",
-              help="Timed runs of each case; slow cases have one.")  # fmt: skip
+@option(
+    "--random number",
+    "Run N random extreme cases too, or alone when no name is given.",
+    "N",
+    click.IntRange(0, 100_000),
+    default=0,
+)
+@option("--seed", "Of the random cases.", "N", click.IntRange(0, 2**31), default=1)
+@option(
+    "--repeats",
+    "Timed runs of each case; slow cases have one.",
+    "N",
+    click.IntRange(1, 1000),
+    default=5,
+)
 @format_option(FORMATS, "What to make; the table is printed.", "table,json,csv,png,svg")
 @out_option
-@click.option(
-    "--list", "only_list", is_flag=True, help="Print the cases with their sources, and run none."
-)
+@option("--list only_list", "Print the cases with their sources, and run none.")
 @limit_options
 def command(
     *,
@@ -89,7 +89,7 @@ def command(
     formats: Formats,
     out: Path,
     only_list: bool,
-    limits: ResourceLimits,
+    timeout: float | None,
 ) -> int:
     """Run stiff and extreme cases: springs, lengths and forces of very different size, points next to folds and cusps.
 
@@ -105,36 +105,32 @@ def command(
         ptmcad stress --random 100 --seed 7 --format table
         ptmcad stress all --random 100
     """
+    limit = None if timeout is None else timeout + GRACE_SECONDS
+    report_deadline(limit)  # of the process; the campaign looks at the clock itself
     from ptmcad.studies.stress.case import free_lengths  # the cases' numbers need no library
 
-    limit = None if limits.timeout is None else limits.timeout + GRACE_SECONDS
-    with held(limits._replace(timeout=limit)):
-        cases = _cases(names, number, seed, everything=only_list)
-        if only_list:
-            from ptmcad.studies.stress.campaign import listing
+    cases = _cases(names, number, seed, everything=only_list)
+    if only_list:
+        from ptmcad.studies.stress.campaign import listing
 
-            click.echo(listing(cases))
-            return 0
-        files = [kind for kind in formats if kind != "table"]
-        if files:
-            check_writable(out, tuple(f"{NAME}.{kind}" for kind in files))
-        from ptmcad.studies.stress.campaign import campaign, summary, table
+        click.echo(listing(cases))
+        return 0
+    files = [kind for kind in formats if kind != "table"]
+    if files:
+        check_writable(out, tuple(f"{NAME}.{kind}" for kind in files))
+    from ptmcad.studies.stress.campaign import campaign, summary, table
 
-        if any(free_lengths(case.question.parameters) for case in cases):
-            with ProgressBar() as progress:
-                compile_certified(limit, progress)
-        deadline = perf_counter() + (limits.timeout or inf)
+    if any(free_lengths(case.question.parameters) for case in cases):
         with ProgressBar() as progress:
-            found = campaign(
-                cases, seed=seed, repeats=repeats, deadline=deadline, progress=progress
-            )
-        written = save(found, out, formats)
-        click.echo(
-            table(found, len(cases))
-            if "table" in formats
-            else "\n".join(summary(found, len(cases)))
-        )
-        report_written(out, written)
+            compile_certified(limit, progress)
+    deadline = perf_counter() + (timeout or inf)
+    with ProgressBar() as progress:
+        found = campaign(cases, seed=seed, repeats=repeats, deadline=deadline, progress=progress)
+    written = save(found, out, formats)
+    click.echo(
+        table(found, len(cases)) if "table" in formats else "\n".join(summary(found, len(cases)))
+    )
+    report_written(out, written)
     if not found["complete"]:
         raise LimitReached(
             f"the time limit was reached after {len(found['cases'])} of {len(cases)} cases"

@@ -4,6 +4,7 @@ into a folder.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -15,24 +16,25 @@ from ptmcad.answer.sweep import State, Sweep
 from ptmcad.cli.commonoptions import (
     PATH,
     Formats,
-    ResourceLimits,
     format_option,
     gathered,
-    held,
     limit_options,
+    option,
     record_argument,
+    report_deadline,
 )
 from ptmcad.cli.completion import names
-from ptmcad.cli.drawing import picture, report_written, share_of
+from ptmcad.cli.drawing import picture, report_written, writer
 from ptmcad.cli.progress import ProgressBar
 from ptmcad.cli.slices import engine_option, question_in
 from ptmcad.errors import ConfigError, shown_path
 from ptmcad.extras import require, require_ffmpeg
 from ptmcad.process.handover import Topic, send
-from ptmcad.process.output import Writer, check_writable, text_writer, write_files
+from ptmcad.process.output import check_writable, write_files
 from ptmcad.question.config.sweeps import sweep_from
 from ptmcad.show import render
 from ptmcad.show.style import DEFAULT
+from ptmcad.text.parsing import share_for
 
 FORMATS = ("csv", "html", "gif", "mp4")
 MEMBER = (
@@ -62,46 +64,60 @@ def _wanted(
 
 @click.command("sweep")
 @record_argument(required=True)
-@click.option("--out", type=PATH, help="Folder of the sweep.  [default: NAME-sweep]")
+@option("--out", "Folder of the sweep.  [default: NAME-sweep]", type=PATH)
 @format_option(
     FORMATS,
     "What to write of the whole sweep besides the index and the results: csv (a line for each member), "
     "html (an atlas), gif or mp4 (a film of the maps).",
 )
-@click.option(
-    "--fps",
-    type=click.IntRange(1, 60),
-    default=8,
-    show_default=True,
-    help="Pictures of a film in a second.",
+@option("--fps", "Pictures of a film in a second.", type=click.IntRange(1, 60), default=8)
+@option(
+    "--jobs",
+    "Number of worker processes on this machine.  [default: all processors]",
+    "N",
+    click.IntRange(min=1),
 )
-@click.option("--jobs", type=click.IntRange(min=1), metavar="N",
-              help="Number of worker processes on this machine.  [default: all processors]")  # fmt: skip
-@click.option("--scheduler", metavar="URL",
-              help="Address of a Dask scheduler, such as tcp://host:8786, whose workers compute instead; needs the "
-                   "extra ptmcad[distributed].")  # fmt: skip
-@click.option("--retries", type=click.IntRange(0, 100), default=RETRIES, show_default=True,
-              help="How often a member is tried again whose process died, or which a limit stopped.")  # fmt: skip
+@option(
+    "--scheduler",
+    "Address of a Dask scheduler, such as tcp://host:8786, whose workers compute instead; needs the "
+    "extra ptmcad[distributed].",
+    "URL",
+)
+@option(
+    "--retries",
+    "How often a member is tried again whose process died, or which a limit stopped.",
+    type=click.IntRange(0, 100),
+    default=RETRIES,
+)
 @engine_option
-@click.option("--along", metavar="NAME", shell_complete=names,
-              help="The axis along which the widest operation range is found.  [default: the first]")  # fmt: skip
-@click.option(
-    "--no-ranges",
-    is_flag=True,
-    help="Leave the widest operation ranges out, often most of the work.",
+@option(
+    "--along",
+    "The axis along which the widest operation range is found.  [default: the first]",
+    "NAME",
+    shell_complete=names,
 )
-@click.option("--no-areas", is_flag=True, help="Leave the regions' areas out.")
-@click.option("--tolerance", callback=share_of, metavar="EPS",
-              help="Stop a member when this share of the window is undetermined (certified engine).")  # fmt: skip
-@click.option("--area-tolerance", callback=share_of, metavar="EPS",
-              help="Relative width of the areas' bounds (exact engine).")  # fmt: skip
-@click.option("--member-timeout", type=click.FloatRange(min=0, min_open=True, max=1e9), metavar="S",
-              help="Stop a member after S seconds, which is then a failure.")  # fmt: skip
+@option("--no-ranges", "Leave the widest operation ranges out, often most of the work.")
+@option("--no-areas", "Leave the regions' areas out.")
+@option(
+    "--tolerance",
+    "Stop a member when this share of the window is undetermined (certified engine).",
+    "EPS",
+    read=share_for,
+)
+@option(
+    "--area-tolerance", "Relative width of the areas' bounds (exact engine).", "EPS", read=share_for
+)
+@option(
+    "--member-timeout",
+    "Stop a member after S seconds, which is then a failure.",
+    "S",
+    click.FloatRange(min=0, min_open=True, max=1e9),
+)
 @limit_options
 @gathered(asked=(MEMBER, _wanted))
 def command(
     *, config: Path, out: Path | None, formats: Formats, fps: int, asked: dict[str, Any], jobs: int | None,
-    scheduler: str | None, retries: int, limits: ResourceLimits,
+    scheduler: str | None, retries: int, timeout: float | None,
 ) -> int:  # fmt: skip
     """Classify every member of a sweep.
 
@@ -124,35 +140,33 @@ def command(
         require("distributed", key="--scheduler")
     if "mp4" in formats:
         require_ffmpeg()
-    folder = Path(f"{question.name}-sweep") if out is None else out
+    folder = out or Path(f"{question.name}-sweep")
     wanted_files = tuple(f"{question.name}.{kind}" for kind in formats)
-    with held(limits), ProgressBar() as progress:
+    report_deadline(timeout)
+    with ProgressBar() as progress:
         from ptmcad.workbench.sweeps.run import sweep, wanted_of
 
         wanted = wanted_of(question, asked)
         check_writable(folder, wanted_files)
         send(Topic.RESUMABLE, f"what is done is in {folder}; the same command goes on")
-        found = sweep(question, folder, jobs, scheduler, wanted, retries, limits.timeout, progress)
+        found = sweep(question, folder, jobs, scheduler, wanted, retries, timeout, progress)
         if wanted_files:
-            making: dict[str, Writer] = {
-                "csv": partial(_table, found),
+            made: dict[str, Callable[[], str]] = {
+                "csv": found.to_csv,
                 "html": partial(_atlas, found, jobs, progress),
             }
             film = partial(_film, found, fps, progress)
             files = zip(wanted_files, formats, strict=True)
             write_files(
-                folder, {name: picture(name, making.get(kind, film)) for name, kind in files}
+                folder,
+                {n: writer(n, made[k]) if k in made else picture(n, film) for n, k in files},
             )
     click.echo(f"{question_in(question.record, question.name)}\n{found.table()}")
     report_written(folder, wanted_files)
     return _status(found)
 
 
-def _table(sweep: Sweep, path: Path) -> None:
-    text_writer(sweep.to_csv())(path)
-
-
-def _atlas(sweep: Sweep, jobs: int | None, progress: ProgressBar, path: Path) -> None:
+def _atlas(sweep: Sweep, jobs: int | None, progress: ProgressBar) -> str:
     from ptmcad.show.report.atlas import atlas, chosen, frame_of
     from ptmcad.workbench.sweeps.index import members
     from ptmcad.workbench.sweeps.run import sketches
@@ -161,7 +175,7 @@ def _atlas(sweep: Sweep, jobs: int | None, progress: ProgressBar, path: Path) ->
     done = [member.number for member in shown if member.state is State.DONE]
     drawn = dict(sketches(sweep.folder, done, jobs, progress))
     frame = frame_of(sweep, _some(sweep).slice, drawn.values())
-    text_writer(atlas(sweep, frame, shown, drawn))(path)
+    return atlas(sweep, frame, shown, drawn)
 
 
 def _film(sweep: Sweep, fps: int, progress: ProgressBar, path: Path) -> None:

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import click
 
-from ptmcad.cli.commonoptions import PATH, ResourceLimits, held, limit_options
+from ptmcad.cli.commonoptions import PATH, limit_options, option
 from ptmcad.cli.progress import ProgressBar
 from ptmcad.cli.slices import slice_options
 from ptmcad.errors import shown_path
@@ -18,16 +18,16 @@ from ptmcad.show.varietytext import FORMATS
 
 @click.command("variety")
 @slice_options
-@click.option("--format", "format", type=click.Choice(list(FORMATS)), default="text", show_default=True,
-              help="The language to write it in.")  # fmt: skip
-@click.option("--out", type=PATH, metavar="FILE", help="Write to a file, not to the terminal.")
+@option(
+    "--format", "The language to write it in.", type=click.Choice(list(FORMATS)), default="text"
+)
+@option("--out", "Write to a file, not to the terminal.", "FILE", PATH)
 @limit_options
 def command(
     *,
     asked: Typed,
     format: str,
     out: Path | None,
-    limits: ResourceLimits,
 ) -> None:
     """Compute the curves off which the number of equilibria, or solutions, is locally constant.
 
@@ -50,7 +50,7 @@ def command(
     if out is not None:
         portable_file(out.name, "--out")
         check_writable(out.parent, (out.name,))
-    with held(limits), ProgressBar():
+    with ProgressBar():
         from ptmcad.exact.eliminationsystem import slice_variety
 
         text = slice_variety(slice).text(format)

@@ -23,9 +23,10 @@ from ptmcad.answer.poses import Poses
 from ptmcad.answer.regionmap import RegionMap, Status
 from ptmcad.answer.sweep import Bounds, Member, Summary
 from ptmcad.cli.commonoptions import (
-    ResourceLimits,
-    held,
+    gathered,
     limit_options,
+    option,
+    report_deadline,
     report_idle,
     result_argument,
 )
@@ -40,7 +41,7 @@ from ptmcad.text.numerals import fraction_of, text_of
 from ptmcad.version import __version__
 
 if TYPE_CHECKING:
-    from ptmcad.verification.report import VerifyReport
+    from ptmcad.verification.report import Check, VerifyReport
 
 Verify = Callable[[Progress], "VerifyReport"]
 _READ = (
@@ -51,19 +52,22 @@ _MORE_DIGITS = 10
 """With so many digits more, enclosures of a line are far narrower than those that are stored."""
 
 
+HOW = ("seed", "boxes", "effort")
+"""The options of `ptmcad.verify`, by their parameters' names."""
+
+
 @click.command("verify")
 @result_argument
-@click.option("--seed", type=click.IntRange(min=0), metavar="N",
-              help="Seed of the random points and of the random boxes.  [default: a fresh one, printed]")  # fmt: skip
-@click.option("--boxes", type=click.IntRange(0, 100_000), metavar="N",
-              help="Random boxes of the free area (outside the cover) of a certified map.  [default: 16]")  # fmt: skip
-@click.option("--effort", type=click.IntRange(0, 10), metavar="N",
-              help="How much of the free area (outside the cover) of a certified map is to be proved free of critical "
-                   "curves: 0 none; each step quadruples the work; 10 all.  [default: 2]")  # fmt: skip
+@option("--seed", "Seed of the random points and of the random boxes.  [default: a fresh one, printed]",
+        "N", click.IntRange(min=0))  # fmt: skip
+@option("--boxes", "Random boxes of the free area (outside the cover) of a certified map.  [default: 16]",
+        "N", click.IntRange(0, 100_000))  # fmt: skip
+@option("--effort", "How much of the free area (outside the cover) of a certified map is to be proved free of critical "
+                    "curves: 0 none; each step quadruples the work; 10 all.  [default: 2]",
+        "N", click.IntRange(0, 10))  # fmt: skip
 @limit_options
-def command(
-    *, result: Path, seed: int | None, boxes: int | None, effort: int | None, limits: ResourceLimits
-) -> int:
+@gathered(how=(HOW, dict))
+def command(*, result: Path, how: Mapping[str, Any], timeout: float | None) -> int:
     """Check RESULT, a JSON file of `ptmcad classify`, `solve`, `range` or `design`, or the folder of a sweep.
 
     The claim of a row is proved by the method that the row names, without the engine's code; all other entries are
@@ -76,58 +80,63 @@ def command(
         ptmcad classify --slice L2,rho --format json
         ptmcad verify slice-L2-rho.json
     """
-    how = {"seed": seed, "boxes": boxes, "effort": effort}
-    with held(limits), _clock(limits.timeout) as is_over:
-        from ptmcad.verification.report import FINISHED, Check, VerifyReport, heading
+    report_deadline(timeout)
+    with _clock(timeout) as over:
+        from ptmcad.verification.report import VerifyReport
 
         checks: list[Check] = []
-        shown: list[Check] = []
-
-        def show(check: Check) -> None:
-            """A row as soon as it is known: the process may be ended in the next check."""
-            if not shown:
-                ProgressBar.say(heading())
-            shown.append(check)
-            ProgressBar.say(check.row())
-
         for title, check in _reports(result, how):
             if title:
                 click.echo(title)
-            shown.clear()
-            token = FINISHED.set(show)
-            try:
-                with ProgressBar() as progress:
-                    report = check(progress)
-            except LimitReached as limit:
-                report = VerifyReport(
-                    (*shown, Check("all others", "", None, f"not reached: {limit}"))
-                )
-            finally:
-                FINISHED.reset(token)
-            checks += report.checks
-            for known in report.checks[len(shown) :]:
-                show(known)
-            click.echo(report.verdict)
-            if report.violation is not None:
-                click.echo(f"violated: {report.violation}", err=True)
-            if is_over():
+            checks += _shown(check).checks
+            if over:
                 break
         whole = VerifyReport(tuple(checks))
         if title:
             click.echo(f"in all: {whole.verdict}")
-        if is_over():
-            click.echo(f"stopped: the time limit of {limits.timeout:g} s was reached", err=True)
-        return 1 if not whole.ok else 3 if is_over() else 0
+        if over:
+            click.echo(f"stopped: the time limit of {timeout:g} s was reached", err=True)
+        return 1 if not whole.ok else 3 if over else 0
+
+
+def _shown(check: Verify) -> VerifyReport:
+    """The report, of which each row is printed as soon as it is known: the process may be ended in
+    the next check.
+    """
+    from ptmcad.verification.report import FINISHED, Check, VerifyReport, heading
+
+    rows: list[Check] = []
+
+    def show(row: Check) -> None:
+        if not rows:
+            ProgressBar.say(heading())
+        rows.append(row)
+        ProgressBar.say(row.row())
+
+    token = FINISHED.set(show)
+    try:
+        with ProgressBar() as progress:
+            report = check(progress)
+    except LimitReached as limit:
+        report = VerifyReport((*rows, Check("all others", "", None, f"not reached: {limit}")))
+    finally:
+        FINISHED.reset(token)
+    for row in report.checks[len(rows) :]:
+        show(row)
+    click.echo(report.verdict)
+    if report.violation is not None:
+        click.echo(f"violated: {report.violation}", err=True)
+    return report
 
 
 @contextmanager
-def _clock(seconds: float | None) -> Iterator[Callable[[], bool]]:
-    """Raise `LimitReached` in what runs inside when the time is over, once; gives whether it has
-    been.
+def _clock(seconds: float | None) -> Iterator[list[int]]:
+    """Raise `LimitReached` in what runs inside when the time is over, once; gives a list that is
+    empty until then.
     """
     over: list[int] = []
     if seconds is None:
-        yield lambda: False
+        yield over
         return
 
     def ring(number: int, _frame: FrameType | None) -> None:
@@ -140,52 +149,37 @@ def _clock(seconds: float | None) -> Iterator[Callable[[], bool]]:
     before = signal.signal(signal.SIGVTALRM, ring)
     timer.start()
     try:
-        yield lambda: bool(over)
+        yield over
     finally:
         timer.cancel()
         signal.signal(signal.SIGVTALRM, before)
 
 
 def _reports(path: Path, how: Mapping[str, Any]) -> Iterator[tuple[str, Verify]]:
-    """What there is to check in a file, each with a heading where there are several; ``how`` are
-    `verify`'s options.
-    """
-
-    from ptmcad.verification import verify
-
-    def of_map(stored: RegionMap) -> Verify:
-        exact = stored.cover is None
-        report_idle(
-            [(name, exact, "an exact map is checked whole") for name in ("boxes", "effort")]
-        )
-        return lambda progress: verify(stored, progress=progress, **how)
-
+    """What there is to check in a file, each with a heading where there are several."""
     if path.is_dir():
         yield "", partial(_verified_sweep, path, how)
         return
-    kind, seed = kind_of(path), how["seed"]
-    if kind in ("design", "poses", "range"):
+    kind = kind_of(path)
+    if kind in _WHOLE:
         report_idle([(name, True, "all that is stored is checked") for name in ("boxes", "effort")])
-    if kind == "design":
-        design = read_other(path, BestDesign.from_json, "ptmcad-design/1")
-        yield "", partial(_verified_design, design, _versions_in(path), seed)
-    elif kind == "poses":
-        poses = read_other(path, Poses.from_json, "ptmcad-poses/1")
-        yield "", partial(_verified_poses, poses, _versions_in(path))
-    elif kind == "range":
-        form = "ptmcad-range/1"
-        found = read_other(path, lambda text: opened(text, form, MAX_BYTES, "ptmcad range"), form)
-        yield "", partial(_verified_range, path, {"format": form, **found.value}, seed)
+        yield "", partial(_WHOLE[kind], path, how["seed"])
     elif kind == "family":
         family = read_family_file(path, whole=False)
         for value, member in family:
-            yield f"{family.free.name} = {text_of(value)}", of_map(member)
-        yield (
-            f"what the members have in common over {family.free.name}",
-            partial(_verified_family, family, seed),
-        )
+            yield f"{family.free.name} = {text_of(value)}", _of_map(member, how)
+        common = f"what the members have in common over {family.free.name}"
+        yield common, partial(_verified_family, family, how["seed"])
     else:
-        yield "", of_map(_map_in(path, kind))
+        yield "", _of_map(_map_in(path, kind), how)
+
+
+def _of_map(stored: RegionMap, how: Mapping[str, Any]) -> Verify:
+    from ptmcad.verification import verify
+
+    exact = stored.cover is None
+    report_idle([(name, exact, "an exact map is checked whole") for name in ("boxes", "effort")])
+    return lambda progress: verify(stored, progress=progress, **how)
 
 
 def _map_in(path: Path, kind: str) -> RegionMap:
@@ -217,8 +211,8 @@ def _verified_sweep(folder: Path, how: Mapping[str, Any], progress: Progress) ->
 
     sweep = read_sweep(folder)
     found = list(members(sweep))
-    known = (m.summary.widest for m in found if m.summary is not None)
-    along = next((widest.along for widest in known if widest is not None), "")
+    widths = (m.summary and m.summary.widest for m in found)
+    along = next((widest.along for widest in widths if widest), "")
 
     def check(member: Member) -> str:
         summary = member.summary
@@ -226,10 +220,8 @@ def _verified_sweep(folder: Path, how: Mapping[str, Any], progress: Progress) ->
             return Unchecked(f"it is {member.state.value}: {member.error}")
         stored = member_map(sweep, member)
         for name, text in member.parameters.items():
-            known = stored.slice.parameters.get(name)
-            if known is not None and not (
-                known.is_constant and known.constant() == fraction_of(text)
-            ):
+            own = stored.slice.parameters.get(name)
+            if own is not None and not (own.is_constant and own.constant() == fraction_of(text)):
                 raise Violation(f"the map is not that of {name} = {text}")
         unknown = ", ".join(member.parameters.keys() - stored.slice.parameters.keys())
         if member.same_as is not None:
@@ -243,12 +235,9 @@ def _verified_sweep(folder: Path, how: Mapping[str, Any], progress: Progress) ->
         if widest is not None and widest.proof == Attainment.UNDECIDED.value:
             doubt = "; where a width is attained"
             if true.widest is not None and _meet(widest.width, true.widest.width):
-                true = replace(
-                    true, widest=widest
-                )  # an earlier version found it, with bounds of its own
-        wrong = [
-            part for part in Summary.__match_args__ if getattr(true, part) != getattr(summary, part)
-        ]
+                # an earlier version found it, with bounds of its own
+                true = replace(true, widest=widest)
+        wrong = [p for p in Summary.__match_args__ if getattr(true, p) != getattr(summary, p)]
         if wrong:
             raise Violation(f"the index has another value than its map: {', '.join(wrong)}")
         report = verify(stored, **how)
@@ -272,15 +261,23 @@ def _verified_sweep(folder: Path, how: Mapping[str, Any], progress: Progress) ->
     return VerifyReport(tuple(checked(None, steps, (), CheckProgress(progress))))
 
 
-def _verified_design(
-    found: BestDesign, versions: Any, seed: int | None, progress: Progress
-) -> VerifyReport:
+def _and(report: VerifyReport, check: Check) -> VerifyReport:
+    return replace(report, checks=(*report.checks, check))
+
+
+def _versions_in(path: Path) -> Any:
+    """Of what wrote a document that can be read; None where it does not say."""
+    return json.loads(path.read_text(encoding="utf-8")).get("versions")
+
+
+def _verified_design(path: Path, seed: int | None, progress: Progress) -> VerifyReport:
     """The best design, and where ranges are longest by exact critical values."""
     from ptmcad.question.config.designkey import design_from
     from ptmcad.show.document.designdocument import extremes_codec
-    from ptmcad.verification import VerifyReport, check_anew, verify_design
+    from ptmcad.verification import check_anew, verify_design
     from ptmcad.workbench.designs.designbounds import exact_maximum
 
+    found = read_other(path, BestDesign.from_json, "ptmcad-design/1")
     report = verify_design(found, seed, progress)
     if not report.ok or not found.maxima:
         return report
@@ -292,44 +289,37 @@ def _verified_design(
     asked = design_from(question, maximise="range", along=data["along"]["name"], over=over,
                         where={"stable": found.working})  # fmt: skip
     anew = extremes_codec(found.over[0].name).write(exact_maximum(asked) or ())
-    stored = {"extremes": data["extremes"], "versions": versions}
+    stored = {"extremes": data["extremes"], "versions": _versions_in(path)}
     compared = check_anew(stored, {"extremes": anew, "versions": data["versions"]})
-    return VerifyReport((*report.checks, replace(compared, name="all of the extremes")))
+    return _and(report, replace(compared, name="all of the extremes"))
 
 
-def _versions_in(path: Path) -> Any:
-    """Of what wrote a document that can be read; None where it does not say."""
-    return json.loads(path.read_text(encoding="utf-8")).get("versions")
-
-
-def _verified_poses(stored: Poses, versions: Any, progress: Progress) -> VerifyReport:
+def _verified_poses(path: Path, _seed: int | None, progress: Progress) -> VerifyReport:
     """The poses at a point, and all that is said of each."""
     from ptmcad.ask.solving import FEW, poses_at
-    from ptmcad.verification import VerifyReport, check_anew, verify_poses
+    from ptmcad.verification import check_anew, verify_poses
     from ptmcad.verification.poseclaims import RIGHTLY, in_same_order
 
+    stored = read_other(path, Poses.from_json, "ptmcad-poses/1")
     report = verify_poses(stored, progress)
     if not report.ok:
         return report
     anew = replace(poses_at(stored.model, stored.parameters, stored.digits), units=stored.units)
-    now, rightly, left = json.loads(anew.to_json()), RIGHTLY, 0
-    if versions != now["versions"]:
+    versions, rightly, left = _versions_in(path), RIGHTLY, 0
+    if versions != json.loads(anew.to_json())["versions"]:
         # an open answer may be decided now, and with many unknowns another engine may answer
         is_open = Status.UNDECIDED in (stored.status, anew.status)
         if is_open or len(stored.model.unknowns) > FEW:
             rightly |= {"status"}
         stored, anew, left = in_same_order(stored, anew)
-        now = json.loads(anew.to_json())
     written = json.loads(stored.to_json()) | {"versions": versions}
-    compared = check_anew(written, now, rightly=rightly)
+    compared = check_anew(written, json.loads(anew.to_json()), rightly=rightly)
     if left and compared.passed:
         compared = replace(compared, passed=None, detail=f"all but {left} poses")
-    return VerifyReport((*report.checks, compared))
+    return _and(report, compared)
 
 
-def _verified_range(
-    path: Path, data: dict[str, Any], seed: int | None, progress: Progress
-) -> VerifyReport:
+def _verified_range(path: Path, seed: int | None, progress: Progress) -> VerifyReport:
     """The counts along a line, and all that is said of it."""
     from ptmcad.ask.classification import load_certified
     from ptmcad.cli.range_answers import answer, is_enclosed, request_codec
@@ -339,6 +329,9 @@ def _verified_range(
     from ptmcad.text.node import Node
     from ptmcad.verification import Check, VerifyReport, check_anew, verify_range
 
+    form = "ptmcad-range/1"
+    found = read_other(path, lambda text: opened(text, form, MAX_BYTES, "ptmcad range"), form)
+    data = {"format": form, **found.value}
     if "slice" not in data or "request" not in data:
         return VerifyReport(
             (Check("range", "", None, "an earlier version made it: of what is not said"),)
@@ -355,21 +348,23 @@ def _verified_range(
                 codec(request.digits).read(Node(data[key], key))
         report = verify_range(data, slice, progress, maxima, seed)
     except (ValueError, KeyError, TypeError, AttributeError, IndexError) as error:
-        raise ConfigError(
-            f"is damaged or not a ptmcad-range/1 file: {error}", file=str(path)
-        ) from error
+        raise ConfigError(f"is damaged or not a {form} file: {error}", file=str(path)) from error
     if not report.ok or "critical" in data:  # which an earlier version answered
         return report
     if is_enclosed(slice, request):
         load_certified(progress)
 
     def anew(digits: int) -> Any:
-        _, parts, _ = answer(slice, replace(request, digits=digits))
+        _, parts, _ = answer(slice, replace(request, digits=digits), progress)
         asked = {"slice": data["slice"], "request": data["request"]}
         return json.loads(document(slice.name, slice.mechanism, {**parts, **asked}))
 
     finer = partial(anew, request.digits + _MORE_DIGITS)
-    return VerifyReport((*report.checks, check_anew(data, anew(request.digits), finer)))
+    return _and(report, check_anew(data, anew(request.digits), finer))
+
+
+_WHOLE = {"design": _verified_design, "poses": _verified_poses, "range": _verified_range}
+"""By kinds of documents: what checks all of one."""
 
 
 def _verified_family(family: FamilyMap, seed: int | None, progress: Progress) -> VerifyReport:

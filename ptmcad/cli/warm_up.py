@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import click
 
-from ptmcad.cli.commonoptions import ResourceLimits, held
+from ptmcad.cli.commonoptions import held
 from ptmcad.cli.progress import ProgressBar
 
 
@@ -19,7 +19,7 @@ def command() -> None:
     Example:
         ptmcad warm-up
     """
-    with held(ResourceLimits(None, None)), ProgressBar() as progress:
+    with held(None, None), ProgressBar() as progress:
         from ptmcad.ask.classification import load_certified
 
         seconds = load_certified(progress)

@@ -12,7 +12,7 @@ there and do not cross.
 
 from __future__ import annotations
 
-from collections.abc import Collection, Container, Iterator
+from collections.abc import Collection, Container, Iterable, Iterator
 from dataclasses import dataclass
 from fractions import Fraction
 
@@ -73,6 +73,38 @@ class Components:
         if any(self.subdivision.state[leaf] == COVERED for leaf in leaves):
             return None
         return int(self.owner[leaves[0]])
+
+    def numbered(self, samples: Iterable[Iterable[Fraction]], window: Window) -> dict[int, int]:
+        """For each component that holds a sample, in the axes' own units, the sample's number.
+
+        Raises
+        ------
+        ValueError
+            When a sample is not in the open window, or not in a component of its own.
+        """
+        found: dict[int, int] = {}
+        for number, sample in enumerate(samples):
+            u, v = (
+                (value - low) / (high - low) * self.cover.steps
+                for value, (low, high) in zip(sample, window, strict=True)
+            )
+            component = self.locate(u, v)
+            if component is None or component in found:
+                raise ValueError(
+                    f"sample {number} is in a rectangle, or in the component of another one"
+                )
+            found[component] = number
+        return found
+
+    def raster(self, across: Integers, up: Integers) -> Integers:
+        """The component just right of and above each lattice point, -1: none; shape (len(up),
+        len(across)).
+        """
+        tree = self.subdivision
+        leaves = tree.leaves_right_above(np.tile(across, len(up)), np.repeat(up, len(across)))
+        # a covered leaf's owner is a cluster, not a component
+        found = np.where(tree.state[leaves] == FREE, self.owner[leaves], -1)
+        return found.reshape(len(up), len(across))
 
     @property
     def touching(self) -> tuple[tuple[int, int], ...]:

@@ -66,13 +66,15 @@ class SliceProblem(NamedTuple):
         """The involutions that map the window to itself and move some of its points; none where the
         count is by a predicate that symmetries do not keep.
         """
-        slice = self.slice
-        if not slice.count.kind.is_symmetric:
+        slice, kind = self.slice, self.slice.count.kind
+        if not kind.is_symmetric:
             return []
         first, second = ((axis.low, axis.high) for axis in slice.axes)
         return [
             c
-            for c in involutions(slice.model, slice.parameters, (first, second))
+            for c in involutions(
+                slice.model, slice.parameters, (first, second), may_negate=kind.needs == "total"
+            )
             if not c.keeps_points
         ]
 

@@ -3,13 +3,13 @@ unknowns and axes.
 
 Guarantee: each `Involution` that is found takes the window to itself, and at every point of it
 solutions to solutions at the point's image, those that count to such, stable ones to stable ones of
-the same index. That is proved by identities of polynomials over Q, decided exactly. All are found
-that exchange and reflect unknowns and axes, turn angles by half a turn, and keep the energy but for
-what no unknown is in, the springs with a free length, the moments, the equations up to their order
-and signs, and the conditions up to their order; so those that a record's `symmetries` list are
-found again where they are of this kind. None is found where expressions are too large to be
-multiplied out, nor with free lengths in closed loops; none that moves axes where parameters have
-denominators.
+the same index unless potentials may be negated. That is proved by identities of polynomials over Q,
+decided exactly. All are found that exchange and reflect unknowns and axes, turn angles by half a
+turn, and keep the energy but for what no unknown is in, the springs with a free length, the
+moments, the equations up to their order and signs, and the conditions up to their order; so those
+that a record's `symmetries` list are found again where they are of this kind. None is found where
+expressions are too large to be multiplied out, nor with free lengths in closed loops; none that
+moves axes where parameters have denominators.
 
 In cosines and sines such a change only permutes monomials and gives them signs. For each
 permutation of unknowns and axes the signs with which all polynomials are kept are the solutions of
@@ -135,7 +135,11 @@ class Involution(NamedTuple):
 
 
 def involutions(
-    model: Model, parameters: Expressions, window: Window | None = None
+    model: Model,
+    parameters: Expressions,
+    window: Window | None = None,
+    *,
+    may_negate: bool = False,
 ) -> list[Involution]:
     """The involutions of a model over a window, but for the identity.
 
@@ -143,12 +147,14 @@ def involutions(
     ----------
     parameters : of the model, as functions of the two axes; one that is missing is zero.
     window : of the axes; without it only those are looked for that keep each point of the slice.
+    may_negate : whether those count, too, that take a potential to its negative: equilibria to
+        equilibria, minima to maxima.
     """
     if len(model.unknowns) > MAX_UNKNOWNS:
         return []
     ring = SliceRing(model.unknowns, parameters, window)
     try:
-        parts = list(_parts(model, ring))
+        parts = list(_parts(model, ring, may_negate))
     except ExpressionError:
         return []
     size = len(model.unknowns)
@@ -209,7 +215,7 @@ class SliceRing(PolynomialRing):
         return total * self.variable(f"over {given.denominator}")
 
 
-def _parts(model: Model, ring: SliceRing) -> Iterator[_KeptPolynomial]:
+def _parts(model: Model, ring: SliceRing, may_negate: bool) -> Iterator[_KeptPolynomial]:
     """What an involution has to keep, but for the order."""
     system = compiled(model)
     unknowns = {name for u in model.unknowns for name in (u, f"cos {u}", f"sin {u}")}
@@ -240,7 +246,9 @@ def _parts(model: Model, ring: SliceRing) -> Iterator[_KeptPolynomial]:
             (f"d {system.names[k]}" for k in system.unknowns), values(system.moments), strict=True
         )
         felt = {m: c for m, c in energy.terms.items() if any(v in unknowns for v, _ in m)}
-        kept += [[felt], [marked(dict(moments))], lengths]
+        work = marked(dict(moments))
+        kept += [[work], lengths]
+        yield felt, [felt], may_negate and not (work or lengths)
     elif lengths:
         raise ExpressionError("free lengths are in none of a closed loop's equations")
     yield from ((f, images, False) for images in kept for f in images)

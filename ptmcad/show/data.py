@@ -211,6 +211,7 @@ def npz_bytes(result: RegionMap, boundaries: Sequence[Boundary], grid: Grid) -> 
         points += [np.full((1, 2), nan)] if k else []
         points.append(piece.points)
         numbers += [k] * (len(piece.points) + bool(k))
+    regions = region_rows(result)
     data = {
         "axes": np.array(result.slice.axis_names),
         "boundary": np.concatenate(points) if points else np.empty((0, 2)),
@@ -219,12 +220,9 @@ def npz_bytes(result: RegionMap, boundaries: Sequence[Boundary], grid: Grid) -> 
         "right": _labels(b.right for b in boundaries),
         "separates": np.array([b.separates for b in boundaries], dtype=np.bool_),
         "distance": np.array([b.distance for b in boundaries], dtype=np.float64),
-        "area": np.array(
-            [(_rounded(r.area[0], -inf), _rounded(r.area[1], inf)) for r in result.regions],
-            dtype=np.float64,
-        ).reshape(-1, 2),
-        "region_stable": _labels(r.stable for r in result.regions),
-        "region_total": _labels(r.total for r in result.regions),
+        "area": np.array([(r["area_low"], r["area_high"]) for r in regions]).reshape(-1, 2),
+        "region_stable": _labels(r["stable"] for r in regions),
+        "region_total": _labels(r["total"] for r in regions),
         **grid.arrays(),
     }
     return _zipped(data)

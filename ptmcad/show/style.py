@@ -6,8 +6,9 @@ anything is computed.
 """
 
 import re
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from enum import Enum
+from functools import partial
 from typing import Any, NamedTuple
 
 from ptmcad.errors import ConfigError
@@ -31,7 +32,8 @@ NAMED = {
     "brown": "#a52a2a", "beige": "#f5f5dc", "lightblue": "#add8e6", "lightgreen": "#90ee90", "salmon": "#fa8072",
 }  # fmt: skip
 """Colours of CSS."""
-_COLOUR = re.compile(r"#(?:[0-9a-fA-F]{3}|[0-9a-fA-F]{6})", re.ASCII)
+_COLOUR = re.compile(r"#(?:[0-9a-f]{3}|[0-9a-f]{6})", re.ASCII)
+_SIZE = re.compile(r"\s*(\d*\.?\d+)\s*[x×*]\s*(\d*\.?\d+)\s*(in|mm|cm|pt)\s*", re.ASCII)
 
 Size = tuple[float, float]
 
@@ -146,12 +148,7 @@ def styled(name: str | PictureStyle = "default", **options: Any) -> PictureStyle
         base = PRESETS[name]
     else:
         raise ConfigError(f"{name!r} is not among {', '.join(PRESETS)}", key="style")
-    unknown = [key for key in options if key not in _READERS]
-    if unknown:
-        raise ConfigError(
-            f"a picture has no {unknown[0]!r}; there are {', '.join(_READERS)}", key=unknown[0]
-        )
-    given = {key: _READERS[key](value) for key, value in options.items() if value is not None}
+    given = {key: _read(key, value) for key, value in options.items() if value is not None}
     made = base._replace(**given)
     if "size" in given:
         made = made._replace(wide=None)
@@ -162,43 +159,36 @@ def styled(name: str | PictureStyle = "default", **options: Any) -> PictureStyle
     return made
 
 
+def _read(key: str, value: Any) -> Any:
+    if key not in _READERS:
+        raise ConfigError(f"a picture has no {key!r}; there are {', '.join(_READERS)}", key=key)
+    read, what = _READERS[key]
+    try:
+        return read(value)
+    except (TypeError, ValueError) as error:
+        raise ConfigError(f"{value!r:.60} is not {what}", key=key) from error
+
+
 def _size(value: Any) -> Size:
     """Inches of a text such as 3.5x2.6in or 90x70mm, or of two numbers of inches."""
+    unit = "in"
     if isinstance(value, str):
-        match = re.fullmatch(
-            r"\s*(\d*\.?\d+)\s*(?:x|×|\*)\s*(\d*\.?\d+)\s*(in|mm|cm|pt)\s*", value, re.ASCII
-        )
-        if match is None:
-            raise ConfigError(f"{value!r} is not a size such as 3.5x2.6in or 90x70mm", key="size")
-        size = (float(match[1]) * _TO_INCHES[match[3]], float(match[2]) * _TO_INCHES[match[3]])
-    else:
-        try:
-            width, height = map(float, value)
-        except (TypeError, ValueError) as error:
-            raise ConfigError(
-                f"{value!r} is not a width and a height in inches", key="size"
-            ) from error
-        size = width, height
-    if not all(MIN_SIDE <= side <= MAX_SIDE for side in size):
-        least, most = f"{MIN_SIDE:g}", f"{MAX_SIDE:g}"
-        raise ConfigError(
-            f"{value!r}: each side must be {least} to {most} inches ({least}x{least}in)", key="size"
-        )
-    return size
+        if (match := _SIZE.fullmatch(value)) is None:
+            raise ValueError
+        *value, unit = match.groups()
+    width, height = (float(side) * _TO_INCHES[unit] for side in value)
+    return _within(width, MIN_SIDE, MAX_SIDE), _within(height, MIN_SIDE, MAX_SIDE)
 
 
-def _points(key: str, least: float, most: float, why: str) -> Any:
-    def read(value: Any) -> float:
-        text = value.strip().removesuffix("pt") if isinstance(value, str) else value
-        try:
-            points = float(text)
-        except (TypeError, ValueError) as error:
-            raise ConfigError(f"{value!r} is not a number of points", key=key) from error
-        if not least <= points <= most:
-            raise ConfigError(f"{value} is not from {least:g} to {most:g} points{why}", key=key)
-        return points
+def _within(number: float, least: float, most: float) -> float:
+    if not least <= number <= most:
+        raise ValueError
+    return number
 
-    return read
+
+def _points(value: Any, least: float, most: float) -> float:
+    text = value.strip().removesuffix("pt") if isinstance(value, str) else value
+    return _within(float(text), least, most)
 
 
 def _parts(value: Any) -> list[Any]:
@@ -209,70 +199,50 @@ def _parts(value: Any) -> list[Any]:
 def _family(value: Any) -> tuple[str, ...]:
     names = _parts(value)
     if not names or not all(isinstance(name, str) and name for name in names):
-        raise ConfigError(
-            f"{value!r} is not a font's family such as serif or Times New Roman", key="font_family"
-        )
+        raise ValueError
     return tuple(names)
 
 
 def _palette(value: Any) -> str | tuple[str, ...]:
     if value in PALETTES:
         return str(value)
-    colours = _parts(value)
-    wrong = [
-        c
-        for c in colours
-        if not (isinstance(c, str) and (_COLOUR.fullmatch(c) or c.lower() in NAMED))
-    ]
-    if wrong or not colours:
-        raise ConfigError(
-            f"{(wrong or [value])[0]!r} is neither {', '.join(PALETTES)} nor a colour such as #c7e4f6 or orange",
-            key="palette",
-        )
-    faces = [_hexadecimal(c) for c in colours]
-    twice = next((c for k, c in enumerate(colours) if faces[k] in faces[:k]), None)
-    if twice is not None:
-        raise ConfigError(f"{twice!r} is there twice: two counts would look alike", key="palette")
-    return tuple(faces)
+    faces = tuple(map(_hexadecimal, _parts(value)))
+    if not faces or len({*faces}) < len(faces):  # two counts would look alike
+        raise ValueError
+    return faces
 
 
-def _hexadecimal(colour: str) -> str:
-    if not colour.startswith("#"):
-        return NAMED[colour.lower()]
-    return (
-        colour if len(colour) == 7 else "#" + "".join(2 * digit for digit in colour[1:])
-    ).lower()
+def _hexadecimal(colour: Any) -> str:
+    found = NAMED.get(str(colour).lower(), str(colour).lower())
+    if not _COLOUR.fullmatch(found):
+        raise ValueError
+    return found if len(found) == 7 else "#" + "".join(2 * digit for digit in found[1:])
 
 
 def _title(value: Any) -> str:
     text = "".join(c if c.isprintable() else " " for c in str(value)).strip()
     if len(text) > MAX_TITLE:
-        raise ConfigError(f"a title has at most {MAX_TITLE} characters", key="title")
+        raise ValueError
     return text
 
 
-def _one_of(key: str, kinds: tuple[str, ...]) -> Any:
-    def read(value: Any) -> str:
-        if value not in kinds:
-            raise ConfigError(f"{value!r} is not among {', '.join(kinds)}", key=key)
-        return str(value)
-
-    return read
+def _line(value: Any) -> str:
+    return LINES[LINES.index(value)]
 
 
-def _legend(value: Any) -> LegendPlace:
-    if isinstance(value, LegendPlace):
-        return value
-    return LegendPlace(_one_of("legend", tuple(place.value for place in LegendPlace))(value))
-
-
-_READERS: Mapping[str, Any] = {
-    "size": _size,
-    "font_size": _points("font_size", MIN_FONT, MAX_FONT, ": smaller text is not read on paper"),
-    "font_family": _family,
-    "palette": _palette,
-    "title": _title,
-    "legend": _legend,
-    "line_width": _points("line_width", 0.1, MAX_LINE, ""),
-    "thin_lines": _one_of("thin_lines", LINES),
-}
+_READERS: Mapping[str, tuple[Callable[[Any], Any], str]] = {
+    "size": (_size, f"a size such as 3.5x2.6in or 90x70mm, of sides from {MIN_SIDE:g} to {MAX_SIDE:g} inches"),
+    "font_size": (
+        partial(_points, least=MIN_FONT, most=MAX_FONT),
+        f"from {MIN_FONT:g} to {MAX_FONT:g} points: smaller text is not read on paper",
+    ),
+    "font_family": (_family, "a font's family such as serif or Times New Roman"),
+    "palette": (
+        _palette, f"{', '.join(PALETTES)} or several colours such as #c7e4f6 or orange, each once",
+    ),
+    "title": (_title, f"a title of at most {MAX_TITLE} characters"),
+    "legend": (LegendPlace, f"among {', '.join(place.value for place in LegendPlace)}"),
+    "line_width": (partial(_points, least=0.1, most=MAX_LINE), f"from 0.1 to {MAX_LINE:g} points"),
+    "thin_lines": (_line, f"among {', '.join(LINES)}"),
+}  # fmt: skip
+"""How each option is read, and what a value is that can be."""

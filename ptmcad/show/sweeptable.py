@@ -9,7 +9,7 @@ are quoted with an apostrophe then.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Iterable, Iterator
 from fractions import Fraction
 from typing import Any
 
@@ -18,8 +18,6 @@ from ptmcad.show import data
 from ptmcad.show.table import aligned, in_order
 from ptmcad.text.numerals import fraction_of, shortest_text
 
-Members = Callable[[], Iterable[Member]]
-"""What gives the members once more from the first."""
 Row = dict[str, Any]
 _FIRST = ("member", "state", "status", "same_as", "cells", "regions", "undetermined")
 _LAST = (
@@ -35,11 +33,11 @@ _WORDS = {
 }
 
 
-def table(sweep: Sweep, members: Members) -> str:
+def table(sweep: Sweep) -> str:
     """One screen: what has become of the members, and some of them."""
     states = "; ".join(f"{number} {_WORDS[state]}" for state, number in sweep.states.items())
     lines = [f"sweep {sweep.name} over {', '.join(sweep.names)}: {len(sweep)} members, {states}"]
-    shown, left_out = _some(members(), len(sweep))
+    shown, left_out = _some(sweep, len(sweep))
     if not shown:
         return lines[0]
     head = [*sweep.names, "regions", "areas", "widest range"]
@@ -79,12 +77,10 @@ def middle(bounds: Bounds) -> Fraction:
     return (fraction_of(bounds[0]) + fraction_of(bounds[1])) / 2
 
 
-def csv_text(sweep: Sweep, members: Members) -> str:
-    """All members as CSV, one a line."""
-    counts = counts_in(members())
-    return data.csv_text(
-        (row(sweep, member, counts) for member in members()), columns(sweep, counts)
-    )
+def csv_text(sweep: Sweep) -> str:
+    """All members as CSV, in their order: the same text however the sweep was computed."""
+    counts = counts_in(sweep)
+    return data.csv_text((row(sweep, member, counts) for member in sweep), columns(sweep, counts))
 
 
 def counts_in(members: Iterable[Member]) -> tuple[str, ...]:
@@ -145,12 +141,12 @@ def _harmless(text: str) -> str:
     return f"'{text}" if text[:1] in ("=", "+", "-", "@") else text
 
 
-def frame_rows(sweep: Sweep, members: Members) -> Iterator[Row]:
+def frame_rows(sweep: Sweep) -> Iterator[Row]:
     """Rows with numbers as floats, and what differs between runs."""
-    counts = counts_in(members())
+    counts = counts_in(sweep)
     exact = {"undetermined", *parameter_columns(sweep).values()}
     exact |= {name for name in columns(sweep, counts) if name.endswith(("_low", "_high"))}
-    for member in members():
+    for member in sweep:
         cells = row(sweep, member, counts)
         floats = {
             name: float(fraction_of(cells[name])) if cells.get(name) else None for name in exact

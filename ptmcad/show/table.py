@@ -105,20 +105,30 @@ def region_area(result: RegionMap, number: int) -> str:
     )
 
 
+def areas_by_key(result: RegionMap) -> dict[tuple[int, ...], tuple[int, Bounds]]:
+    """The number of regions of each count, in increasing order, and bounds of their areas' sum."""
+    areas: dict[tuple[int, ...], list[Bounds]] = {}
+    for region in result.regions:
+        areas.setdefault(counted_by(region, result.slice.count), []).append(region.area)
+    return {
+        key: (
+            len(own),
+            (sum((a for a, _ in own), Fraction(0)), sum((b for _, b in own), Fraction(0))),
+        )
+        for key, own in sorted(areas.items())
+    }
+
+
 def area_by_count(result: RegionMap) -> dict[str, Bounds]:
     """Bounds of the area of the regions with each count, by the count's text.
 
     What is undetermined is a part of several bounds of a certified map, but in their sum once.
     """
     undetermined = result.undetermined * result.slice.area
-    areas: dict[str, list[Bounds]] = {}
-    for region in result.regions:
-        areas.setdefault(count_text(region, result.slice.count), []).append(region.area)
-    found = {}
-    for text in sorted(areas, key=in_order):
-        low, high = (sum((area[end] for area in areas[text]), Fraction(0)) for end in (0, 1))
-        found[text] = (low, high if result.cover is None else min(high, low + undetermined))
-    return found
+    return {
+        key_text(key): (low, high if result.cover is None else min(high, low + undetermined))
+        for key, (_, (low, high)) in areas_by_key(result).items()
+    }
 
 
 def _short(value: Fraction) -> str:

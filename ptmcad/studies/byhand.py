@@ -225,14 +225,11 @@ def at(p: Values, th1: Floats, th2: Floats) -> tuple[Any, Any]:
 
 def scale(p: Elements) -> Any:
     """The largest summand of the gradient: of a spring's or a load's moment about a joint."""
-    longest = np.maximum(p["L1"], p["L2"])
-    span = np.maximum.reduce(
-        [p["rho"], longest, *(value for name, value in p.items() if name.startswith("l0"))]
+    stiffness, longest, span, load = (
+        np.max([np.abs(value) for name, value in p.items() if name.startswith(start)], axis=0)
+        for start in ("k", "L", ("L", "rho", "l0"), "F")
     )
-    loads = np.maximum.reduce(
-        [0 * longest, *(np.abs(value) for name, value in p.items() if name.startswith("F"))]
-    )
-    return np.maximum(np.maximum.reduce([p["k1"], p["k2"], p["k3"]]) * span, loads) * longest
+    return np.maximum(stiffness * span, load) * longest
 
 
 def distinct(th1: Floats, th2: Floats) -> NDArray[np.bool_]:

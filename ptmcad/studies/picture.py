@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.ticker import FuncFormatter, LogLocator, NullLocator, SymmetricalLogLocator
+from matplotlib.ticker import LogLocator, NullLocator
 
 from ptmcad.show.render.colours import INK
 from ptmcad.show.render.printing import settings
@@ -21,8 +21,10 @@ from ptmcad.text.numerals import power_of_ten
 
 DPI = 110
 COLUMNS = 4
-LINE = 145
-"""Letters in a line of what stands below."""
+BESIDE = 1.6
+"""Factor of what is beside the marks, so that one of 1, 2 and 5 is seen at least."""
+LETTERS = 15
+"""In an inch of what stands below."""
 COLORS = ("#0b5394", "#38761d", "#741b47", "#b45f06", "#555555", "#8a7d00", "#009e73", "#c00000")
 STYLES: tuple[dict[str, Any], ...] = (
     *({"color": color, "marker": marker} for color, marker in zip(COLORS, "osD^PXv*", strict=True)),
@@ -30,7 +32,7 @@ STYLES: tuple[dict[str, Any], ...] = (
 )
 """Of curves that are joined."""
 WIDE = 1e4
-"""Factor between abscissae from which on not every decade has marks."""
+"""Factor between the ends of a single panel from which on not every decade has marks."""
 
 
 Mark = tuple[float, float, float, float, str]
@@ -55,55 +57,52 @@ def draw(
     """
     curves = [curve for panel in panels.values() for curve in panel]
     heights = [y for curve in curves for _, y, *_ in curve.marks]
+    least = 10.0 ** floor(log10(min((y for y in heights if y > 0), default=1e-3)))
     columns = min(len(panels), COLUMNS) or 1
     rows = ceil(len(panels) / columns)
-    notes = [line for sentence in below for line in textwrap.wrap(sentence, LINE)]
+    width = 9.2 if columns == 1 else 3.0 * columns
+    notes = [line for sentence in below for line in textwrap.wrap(sentence, int(LETTERS * width))]
     words = [
         f"{c.name}: {', '.join(f'{x:.3g}: {y:.3g}' for x, y, *_ in c.marks)}."
         for c in curves
         if c.marks
     ]
     with settings():
-        figure = Figure(
-            (9.2, 6.4) if columns == 1 else (3 * columns, 2.6 * rows + 1.5), layout="constrained"
-        )
+        figure = Figure((width, 6.4 if columns == 1 else 2.6 * rows + 1.5), layout="constrained")
         figure.set_label(f"{title}\n{' '.join([*words, *below])}")
         figure.suptitle(title, fontsize=12)
         for number, (name, panel) in enumerate(panels.items()):
             axes = figure.add_subplot(rows, columns, number + 1)
-            _scales(axes, [mark for curve in panel for mark in curve.marks], heights)
-            axes.set_title(name, fontsize=10)
-            axes.set(xlabel=x, ylabel="" if number % columns else y)
             for curve in panel:
                 _curve(axes, curve)
+            axes.set_title(name, fontsize=10)
+            axes.set(xscale="log", xlabel=x, ylabel="" if number % columns else y)
+            axes.set_yscale("symlog", linthresh=least, linscale=0.5)
+            axes.set_ylim(
+                -0.4 * least if min(heights) <= 0 else least / 2, 4 * max(least, *heights)
+            )
+            axes.axhspan(-least, least, color="#eef3e6", zorder=0)
+            low, high = axes.get_xlim()
+            axes.set_xlim(low / BESIDE, high * BESIDE)
+            axes.yaxis.get_major_locator().set_params(numticks=8)  # type: ignore[call-arg]
+            axes.yaxis.set_major_formatter(_decade)
+            axes.xaxis.set_major_locator(
+                LogLocator(numticks=4)
+                if columns > 1 or high > WIDE * low
+                else LogLocator(subs=(1.0, 2.0, 5.0))
+            )
+            axes.xaxis.set_major_formatter("{x:g}")
+            axes.xaxis.set_minor_locator(NullLocator())
+            axes.grid(color="#dddddd", linewidth=0.6)
+            axes.set_axisbelow(True)
         shown = figure.axes[0].get_legend_handles_labels() if panels else ([], [])
         figure.legend(*shown, loc="outside lower center", ncols=3 if rows > 1 else 2, frameon=False, fontsize=9,
                       labelcolor=INK, title="\n".join(notes), title_fontsize=8.5)  # fmt: skip
     return figure
 
 
-def _scales(axes: Axes, marks: Sequence[Mark], heights: Sequence[float]) -> None:
-    least = 10.0 ** floor(log10(min((y for y in heights if y > 0), default=1e-3)))
-    low, high = min(mark[2] for mark in marks), max(mark[3] for mark in marks)
-    beside = max(1.6, (high / low) ** 0.1)
-    axes.set_xscale("log")
-    axes.set_yscale("symlog", linthresh=least, linscale=0.5)
-    axes.set_xlim(low / beside, high * beside)
-    axes.set_ylim(-0.4 * least if min(heights) <= 0 else least / 2, 4 * max(least, *heights))
-    axes.axhspan(-least, least, color="#eef3e6", zorder=0)
-    decades = SymmetricalLogLocator(base=10, linthresh=least)
-    decades.set_params(numticks=8)
-    axes.yaxis.set_major_locator(decades)
-    axes.yaxis.set_major_formatter(
-        FuncFormatter(lambda y, _: power_of_ten(round(log10(y))) if y > 0 else "0")
-    )
-    axes.xaxis.set_major_locator(
-        LogLocator(numticks=4) if high > WIDE * low else LogLocator(subs=(1.0, 2.0, 5.0))
-    )
-    axes.xaxis.set_major_formatter(FuncFormatter(lambda x, _: f"{x:g}"))
-    axes.xaxis.set_minor_locator(NullLocator())
-    axes.grid(color="#dddddd", linewidth=0.6)
-    axes.set_axisbelow(True)
+def _decade(y: float, _place: object) -> str:
+    return power_of_ten(round(log10(y))) if y > 0 else "0"
 
 
 def _curve(axes: Axes, curve: Curve) -> None:

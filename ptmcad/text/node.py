@@ -181,12 +181,12 @@ class Node(NamedTuple):
             raise self.fault(f"has more than {limit} {what}" if self.faults is None else number)
 
     def record(
-        self, known: Collection[str], needed: Iterable[str] = (), like: str = "", expected: str = ""
+        self, known: Collection[str], needed: Iterable[str] = (), like: str = ""
     ) -> dict[str, Node]:
         """The entries of a mapping; every key that is not known, and every one that is missing, is
         a fault.
         """
-        found = self.mapping(like=like, expected=expected)
+        found = self.mapping(like=like)
         if found.keys() >= {*needed} and found.keys() <= {*known}:
             return found
         for name in found:

@@ -24,10 +24,11 @@ from ptmcad.verification.rootcounts import roots_between
 _COST = r"([0-9]+(?:\.[0-9]+)?(?:e\+[0-9]+)?)"
 _CHOICE = re.compile(rf"predicted cost {_COST} against {_COST}", re.ASCII)
 _SAME_COST = "both orders are predicted to cost the same"
-_HALF = re.compile(
+_HALF = (
     r"left out: areas on one half of the window \(its solutions are those of the other half, "
-    r"by [-+]?\w+ -> [^,>]+(, [-+]?\w+ -> [^,>]+)*\)"
+    r"by ((, )?({0}) -> [-+ ]*({0})( [-+] [\w/]+)?)+\)"
 )
+"""With a place for the names of unknowns and axes."""
 _NO_AREAS = PlanStep("areas of the regions", False, "not asked for")
 
 
@@ -52,7 +53,9 @@ def check_plan(claims: Claims) -> str:
     """Every step of the plan."""
     result = claims.result
     expected, plan = list(_expected(claims)), list(result.plan)
-    if plan and _HALF.fullmatch(str(plan[-1])) and not plan[-1].saving:
+    names = "|".join((*result.slice.axis_names, *claims.model.unknowns))
+    half = plan and re.fullmatch(_HALF.format(names), str(plan[-1])) and not plan[-1].saving
+    if half and _NO_AREAS not in plan:
         del plan[-1]  # areas are checked on the whole window, so that nothing rests on it
     if len(expected) != len(plan):
         raise Violation(f"the plan has {len(plan)} steps, not {len(expected)}")
@@ -67,11 +70,10 @@ def check_plan(claims: Claims) -> str:
                 f"component {c.number} is used, but it has no point in the window, and the plan does not "
                 "say that such are kept"
             )
-    if _NO_AREAS in plan:
-        x, y = result.slice.axes
-        window_area = (x.high - x.low) * (y.high - y.low)
-        if any(region.area[0] != 0 or region.area[1] < window_area for region in result.regions):
-            raise Violation("areas are known, but the plan says that they were not asked for")
+    if _NO_AREAS in plan and any(
+        region.area[0] or region.area[1] < result.slice.area for region in result.regions
+    ):
+        raise Violation("areas are known, but the plan says that they were not asked for")
     return f"{len(expected)} steps"
 
 

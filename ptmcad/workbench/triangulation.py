@@ -8,9 +8,9 @@ the members' walls miss no middle by more than the tolerance, up to the depth of
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from fractions import Fraction
-from itertools import pairwise
+from itertools import chain, pairwise
 from math import cos, hypot, pi
 
 import numpy as np
@@ -19,10 +19,16 @@ from numpy.typing import NDArray
 from ptmcad.answer.boundarysurface import Sheet
 from ptmcad.exact.boundaries.boundarystrips import JUMP, BoundaryStrips, Key
 from ptmcad.question.slice import Axes
+from ptmcad.show.render.polylines import refined
 
 Joined = list[tuple[Fraction, BoundaryStrips]]
 """Members with their values, in increasing order, whose boundaries have the same shape."""
 _DEPTH = 5
+_PLACES = (0.0, 0.25, 0.5, 0.75, 1.0)
+"""Where walls are cut at first."""
+_FIRST, _NEXT = slice(None, -1), slice(1, None)
+_CORNERS = ((_FIRST, _FIRST), (_FIRST, _NEXT), (_NEXT, _NEXT), (_NEXT, _FIRST))
+"""Of a quadrilateral between neighbouring members and columns, in turn."""
 _WELD = float(JUMP)
 """Of the window: ends of walls that are no further apart are one vertex."""
 
@@ -33,6 +39,10 @@ Mesh = tuple[Floats, Integers, Integers, Integers, tuple[Sheet, ...]]
 """Vertices, triangles, each triangle's sheet, each vertex's member by its number among all values,
 and the sheets: as of `BoundarySurface`.
 """
+_Grid = tuple[tuple[Key, Key], Sequence[Fraction], Floats]
+"""The counts on both sides of a sheet, the values of its members, and its points in the window's unit
+square, shape (members, points, 2), in the axes' order.
+"""
 
 
 def mesh_of(runs: Sequence[Joined], axes: Axes, tolerance: Fraction) -> Mesh:
@@ -42,155 +52,88 @@ def mesh_of(runs: Sequence[Joined], axes: Axes, tolerance: Fraction) -> Mesh:
     ----------
     tolerance : how far chords of walls may miss the walls' middles, as a share of the window.
     """
-    numbers = {
-        value: n for n, value in enumerate(sorted({value for run in runs for value, _ in run}))
-    }
-    builder = _Builder(axes, numbers)
+    heights = sorted({value for run in runs for value, _ in run})
+    points: list[tuple[float, float]] = []
+    member: list[int] = []
+    ends: dict[int, list[int]] = {}
+
+    def numbered(value: Fraction, row: list[tuple[float, float]]) -> Iterator[int]:
+        """A member's vertices; at both ends those that are there already."""
+        own = heights.index(value)
+        known = ends.setdefault(own, [])
+        for k, (x, y) in enumerate(row):
+            is_end = k in (0, len(row) - 1)
+            near = (n for n in known if hypot(points[n][0] - x, points[n][1] - y) < _WELD)
+            number = next(near, len(points)) if is_end else len(points)
+            if number == len(points):
+                points.append((x, y))
+                member.append(own)
+                known += [number] * is_end
+            yield number
+
+    faces, sheets = [np.zeros((0, 3), dtype=np.int64)], []
     for run in runs:
-        for number in range(len(run[0][1].strips)):
-            _add_walls(builder, run, number, float(tolerance))
-        _add_openings(builder, run)
-    return builder.mesh()
+        for counts, values, rows in chain(
+            _walls(run, axes, float(tolerance)), _openings(run, axes)
+        ):
+            low, high = sorted(counts)
+            sheets.append(Sheet((low, high), values[0], values[-1]))
+            numbers = [list(numbered(*own)) for own in zip(values, rows.tolist(), strict=True)]
+            faces.append(_triangles(np.array(numbers), rows))
+    lows, widths = ([float(getattr(a, end)) for a in axes] for end in ("low", "width"))
+    flat = np.array(points).reshape(-1, 2) * widths + lows
+    above = np.array(list(map(float, heights)))[member]
+    of_sheet = np.array([k for k, own in enumerate(faces[1:]) for _ in own], dtype=np.int64)
+    vertices, of_vertex = np.column_stack([flat, above]), np.array(member, dtype=np.int64)
+    return vertices, np.concatenate(faces), of_sheet, of_vertex, tuple(sheets)
 
 
-def _add_walls(builder: _Builder, run: Joined, number: int, tolerance: float) -> None:
-    keys = run[0][1].strips[number].keys
-    if len(keys) == 1:
-        return
-    shares = _shares(builder, run, number, tolerance)
-    for wall, counts in enumerate(pairwise(keys)):
-        sheet = builder.sheet(counts, run)
-        rows = []
-        for value, strips in run:
-            columns = [strips.at(number, share) for share in shares]
-            points = [builder.point(strips.base, at, heights[wall]) for at, *heights in columns]
-            rows.append(builder.row(value, points))
-        for first, second in pairwise(rows):
-            builder.band(sheet, first, second)
+def _walls(run: Joined, axes: Axes, tolerance: float) -> Iterator[_Grid]:
+    """Cut at the same shares of their strips for all members: from 0 to 1, denser towards both ends."""
+    values = [value for value, _ in run]
+    some = [run[k][1] for k in (0, len(run) // 3, 2 * len(run) // 3, -1)]
+    for number, strip in enumerate(run[0][1].strips):
+        if len(strip.keys) == 1:
+            continue
 
-
-def _add_openings(builder: _Builder, run: Joined) -> None:
-    """Pieces of lines across the base that neighbouring members have alike."""
-    openings = [{(o.place, o.keys): o for o in strips.openings} for _, strips in run]
-    for k, (before, after) in enumerate(pairwise(openings)):
-        for place in sorted(before.keys() & after.keys()):
-            sheet = builder.sheet(place[1], run[k : k + 2])
-            rows = []
-            for (value, strips), opening in zip(
-                run[k : k + 2], (before[place], after[place]), strict=True
-            ):
-                ends = [
-                    builder.point(strips.base, opening.at, height)
-                    for height in (opening.low, opening.high)
-                ]
-                rows.append(builder.row(value, ends))
-            builder.band(sheet, *rows)
-
-
-def _shares(builder: _Builder, run: Joined, number: int, tolerance: float) -> list[float]:
-    """Where the walls of a strip are cut, the same for all members: from 0 to 1, denser towards
-    both ends.
-    """
-    some = [strips for _, strips in (run[0], run[len(run) // 3], run[2 * len(run) // 3], run[-1])]
-
-    def columns(place: float) -> Floats:
-        found = [(s.base, s.at(number, _share(place))) for s in some]
-        return np.array(
-            [[builder.point(base, at, h) for h in heights] for base, (at, *heights) in found]
-        )
-
-    known = {place: columns(place) for place in (0.0, 0.25, 0.5, 0.75, 1.0)}
-    pending = list(pairwise(sorted(known)))
-    for _ in range(_DEPTH):
-        following = []
-        for a, b in pending:
-            middle = (a + b) / 2
-            known[middle] = columns(middle)
-            if _deviation(known[a], known[middle], known[b]) > tolerance:
-                following += [(a, middle), (middle, b)]
-        pending = following
-    return [_share(place) for place in sorted(known)]
-
-
-def _share(place: float) -> float:
-    return (1 - cos(pi * place)) / 2 if 0 < place < 1 else place
-
-
-def _deviation(first: Floats, middle: Floats, last: Floats) -> float:
-    """The largest distance of a middle point from its chord; arrays of points of the window's unit
-    square.
-    """
-    chord, way = last - first, middle - first
-    length = np.hypot(chord[..., 0], chord[..., 1])
-    cross = np.abs(chord[..., 0] * way[..., 1] - chord[..., 1] * way[..., 0])
-    return float(
-        np.max(np.divide(cross, length, out=np.zeros_like(cross), where=length > 0), initial=0.0)
-    )
-
-
-class _Builder:
-    """What there is of the mesh so far; points are of the window's unit square, in the axes' order."""
-
-    def __init__(self, axes: Axes, numbers: dict[Fraction, int]) -> None:
-        self.axes, self.numbers = axes, numbers
-        self.points: list[tuple[float, float, int]] = []
-        self.faces: list[tuple[int, int, int]] = []
-        self.of_sheet: list[int] = []
-        self.sheets: list[Sheet] = []
-        self.ends: dict[int, list[int]] = {}
-
-    def point(self, base: int, u: Fraction, v: Fraction) -> tuple[float, float]:
-        pair = (u, v) if base == 0 else (v, u)
-        x, y = (float(a.share(c)) for c, a in zip(pair, self.axes, strict=True))
-        return x, y
-
-    def sheet(self, counts: tuple[Key, Key], run: Joined) -> int:
-        """The number of a new one."""
-        low, high = sorted(counts)
-        self.sheets.append(Sheet((low, high), run[0][0], run[-1][0]))
-        return len(self.sheets) - 1
-
-    def row(self, value: Fraction, points: Sequence[tuple[float, float]]) -> list[int]:
-        """The numbers of a member's vertices; at both ends those that are there already."""
-        member = self.numbers[value]
-        numbers = []
-        for k, (x, y) in enumerate(points):
-            if k in (0, len(points) - 1):
-                numbers.append(self._end(x, y, member))
-            else:
-                self.points.append((x, y, member))
-                numbers.append(len(self.points) - 1)
-        return numbers
-
-    def _end(self, x: float, y: float, member: int) -> int:
-        ends = self.ends.setdefault(member, [])
-        for n in ends:
-            if hypot(self.points[n][0] - x, self.points[n][1] - y) < _WELD:
-                return n
-        self.points.append((x, y, member))
-        ends.append(len(self.points) - 1)
-        return ends[-1]
-
-    def band(self, sheet: int, lower: Sequence[int], upper: Sequence[int]) -> None:
-        """Two triangles between each two columns, parted along the shorter diagonal."""
-        for (a, b), (d, c) in zip(pairwise(lower), pairwise(upper), strict=True):
-            halves = (
-                ((a, b, c), (a, c, d))
-                if self._apart(a, c) <= self._apart(b, d)
-                else ((a, b, d), (b, c, d))
+        def columns(place: float, of: Sequence[BoundaryStrips], number: int = number) -> Floats:
+            share = (1 - cos(pi * place)) / 2 if 0 < place < 1 else place
+            found = [(strips.base, strips.at(number, share)) for strips in of]
+            return np.array(
+                [[_placed(axes, b, at, v) for v in heights] for b, (at, *heights) in found]
             )
-            self.faces += halves
-            self.of_sheet += [sheet] * 2
 
-    def _apart(self, m: int, n: int) -> float:
-        return hypot(self.points[m][0] - self.points[n][0], self.points[m][1] - self.points[n][1])
+        places = refined(
+            lambda place: columns(place, some).reshape(-1, 2), _PLACES, tolerance, _DEPTH
+        )
+        members = [strips for _, strips in run]
+        points = np.array([columns(place, members) for place in places])
+        for wall, counts in enumerate(pairwise(strip.keys)):
+            yield counts, values, points[:, :, wall].swapaxes(0, 1)
 
-    def mesh(self) -> Mesh:
-        values = np.array([float(value) for value in self.numbers])
-        found = np.array(self.points, dtype=float).reshape(-1, 3)
-        member = found[:, 2].astype(np.int64)
-        scaled = [float(a.low) + found[:, k] * float(a.width) for k, a in enumerate(self.axes)]
-        heights = values[member] if len(member) else np.zeros(0)
-        vertices = np.column_stack([*scaled, heights])
-        faces = np.array(self.faces, dtype=np.int64).reshape(-1, 3)
-        return vertices, faces, np.array(self.of_sheet, dtype=np.int64), member, tuple(self.sheets)
+
+def _openings(run: Joined, axes: Axes) -> Iterator[_Grid]:
+    """Pieces of lines across the base that neighbouring members have alike."""
+    for (low, before), (high, after) in pairwise(run):
+        known = [{(o.place, o.keys): o for o in strips.openings} for strips in (before, after)]
+        for place in sorted(known[0].keys() & known[1].keys()):
+            both = (openings[place] for openings in known)
+            points = [[_placed(axes, before.base, o.at, v) for v in (o.low, o.high)] for o in both]
+            yield place[1], (low, high), np.array(points)
+
+
+def _placed(axes: Axes, base: int, u: Fraction, v: Fraction) -> tuple[float, float]:
+    first, second = axes
+    x, y = (v, u) if base else (u, v)
+    return float(first.share(x)), float(second.share(y))
+
+
+def _triangles(numbers: Integers, points: Floats) -> Integers:
+    """Two between each two columns of neighbouring members, parted along the shorter diagonal."""
+    a, b, c, d = (numbers[at] for at in _CORNERS)
+    p, q, r, s = (points[at] for at in _CORNERS)
+    short = np.hypot(*(p - r).T).T <= np.hypot(*(q - s).T).T
+    first = np.where(short, [a, b, c], [a, b, d])
+    second = np.where(short, [a, c, d], [b, c, d])
+    found: Integers = np.moveaxis(np.stack([first, second]), (0, 1), (2, 3)).reshape(-1, 3)
+    return found

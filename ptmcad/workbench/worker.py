@@ -12,10 +12,10 @@ import signal
 import socket
 import subprocess
 import sys
-from collections import deque
 from collections.abc import Callable
+from contextlib import suppress
 from multiprocessing.connection import Connection
-from time import monotonic
+from threading import Lock
 from typing import Any
 
 from ptmcad.errors import OutputError, shown
@@ -33,18 +33,18 @@ class Cancelled(Exception):
     """The job at hand is no longer wanted."""
 
 
+class WorkerLost(Exception):
+    """A worker has ended without an answer, for the reason in the text."""
+
+
 Task = Callable[[Any, Callable[[], None]], Any]
 """What becomes of a job, in the process that computes it: a function that is sent there. Its second
-argument raises `Cancelled` when the job is no longer wanted, where jobs come one by one."""
+argument raises `Cancelled` when the job is no longer wanted.
+"""
 
 
-class Worker:
-    """A process with its task.
-
-    Attributes
-    ----------
-    numbers : the jobs that it has, of which it computes the first.
-    since : when that was begun, as far as is known.
+class _Process:
+    """A process with its task, which has one job at a time.
 
     Raises
     ------
@@ -73,68 +73,126 @@ class Worker:
             theirs.close()
             os.close(read)
         self.connection = Connection(ours.detach())
-        self.numbers: list[int] = []
-        self.since = monotonic()
-        self._send(task)
+        self.number = 0
+        self.send(task)
 
-    def ask(self, number: int, job: Any) -> None:
-        """Have a job computed, after those that it has."""
-        if not self.numbers:
-            self.since = monotonic()
-        self.numbers.append(number)
-        self._send((number, job))
-
-    def cancel(self, number: int) -> None:
-        """Have a job given up, if it is the one at hand."""
-        self._send((number, CANCEL))
-
-    def _send(self, what: object) -> None:
-        try:
+    def send(self, what: object) -> None:
+        """Send the task, or a job or `CANCEL` with its number."""
+        with suppress(OSError):  # it has died: reading its answer says so
             self.connection.send(what)
-        except OSError:  # it has died: reading its answer says so
-            return
-
-    def answer(self) -> tuple[int, Any, str]:
-        """The next answer, waited for: a job's number and what the task returned, or the text of an
-        error that has ended the process.
-
-        Raises
-        ------
-        EOFError, OSError
-            When the process has died.
-        """
-        number, outcome, error = self.connection.recv()
-        self.numbers.remove(number)
-        self.since = monotonic()
-        return number, outcome, error
 
     def bury(self) -> int:
-        """Close what belongs to a process that has ended or is to end, and return its exit status."""
+        """End it, close what belongs to it, and return its exit status."""
+        self.process.kill()
         self.connection.close()
         os.close(self._lifeline)
         return self.process.wait()
 
 
+class Worker:
+    """One process after another for a task: one that has ended is replaced.
+
+    Several threads may use it, of which one at a time computes.
+    """
+
+    def __init__(self, task: Task) -> None:
+        self._task, self._lock = task, Lock()
+        self.current: _Process | None = None
+        self._closed = False
+
+    def open(self) -> _Process:
+        """The process, another one where it has ended.
+
+        Raises
+        ------
+        OutputError
+            When there can be none.
+        WorkerLost
+            After `close`.
+        """
+        with self._lock:
+            if self._closed:
+                raise WorkerLost("it is closed")
+            if self.current is not None and self.current.process.poll() is not None:
+                self.current.bury()
+                self.current = None
+            if self.current is None:
+                self.current = _Process(self._task)
+            return self.current
+
+    def compute(self, job: Any, seconds: float | None = None) -> Any:
+        """What the task returns of a job.
+
+        Raises
+        ------
+        WorkerLost
+            When the process has died, or ended itself by an error.
+        TimeoutError
+            When there is no answer after so many seconds; the process is killed then.
+        """
+        found = self.open()
+        found.number += 1
+        found.send((found.number, job))
+        try:
+            if not found.connection.poll(seconds):
+                raise TimeoutError(f"it took more than {seconds:g} s")
+            outcome, error = found.connection.recv()
+        except TimeoutError:
+            self.end()
+            raise
+        except (EOFError, OSError) as lost:
+            raise WorkerLost(_how_ended(self.end())) from lost
+        if error:
+            self.end()
+            raise WorkerLost(error)
+        return outcome
+
+    def cancel(self) -> None:
+        """Have the job at hand given up."""
+        if (found := self.current) is not None:
+            found.send((found.number, CANCEL))
+
+    def end(self) -> int:
+        """End the process, which has nothing to tidy up; its exit status."""
+        with self._lock:
+            found, self.current = self.current, None
+        return 0 if found is None else found.bury()
+
+    def close(self) -> None:
+        """End it for good."""
+        with self._lock:
+            self._closed = True
+        self.end()
+
+
+def _how_ended(status: int) -> str:
+    if status >= 0:
+        return f"its process ended by itself with status {status}"
+    try:
+        name = signal.Signals(-status).name
+    except ValueError:
+        name = f"signal {-status}"
+    return f"its process was ended by {name}"
+
+
 def _serve(connection: Connection) -> None:
-    task, current, later = connection.recv(), -1, deque[tuple[int, Any]]()
+    task = connection.recv()
 
     def check() -> None:
         while connection.poll():
-            message = connection.recv()
-            if message == (current, CANCEL):
+            if connection.recv() == (current, CANCEL):
                 raise Cancelled
-            later.append(message)
 
     while True:
-        current, job = later.popleft() if later else connection.recv()
+        current, job = connection.recv()
         if job == CANCEL:
             continue  # it came too late: the job is done
         try:
             outcome = task(job, check)
         except BaseException as error:  # raised again, and ends this process
-            connection.send((current, None, shown(f"{type(error).__name__}: {error}")))
+            connection.send((None, shown(f"{type(error).__name__}: {error}")))
             raise
-        connection.send((current, outcome, ""))
+        connection.send((outcome, ""))
 
 
 def main(arguments: list[str]) -> None:

@@ -8,6 +8,7 @@ from fractions import Fraction
 import numpy as np
 import pytest
 import sympy
+import yaml
 from support.certified_map import STEPS, certified_map
 from support.maps import shipped
 
@@ -158,10 +159,11 @@ def test_centres_on_curves_and_critical_values_have_no_label_or_the_right_one() 
     """2 (x^2 + y^2) = 1 on [-2, 2]^2: with 4 columns (1/2, 1/2) is a centre, an odd number has one
     over 0.
     """
-    record = {
-        "name": "circle", "system": {"unknowns": {"z": "real"}, "equations": ["z^2 + 2*x^2 + 2*y^2 - 1"]},
-        "axes": {"x": [-2, 2], "y": [-2, 2]},
-    }  # fmt: skip
+    record = yaml.safe_load("""
+        name: circle
+        system: {unknowns: {z: real}, equations: [z^2 + 2*x^2 + 2*y^2 - 1]}
+        axes: {x: [-2, 2], y: [-2, 2]}
+    """)
     result = ptmcad.classify(ptmcad.slice_from_mapping(record))
     for n in (4, 7, 20):
         grid = result.grid(n)

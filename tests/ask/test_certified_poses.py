@@ -11,6 +11,7 @@ from typing import Any
 import jsonschema
 import numpy as np
 import pytest
+import yaml
 from click.testing import CliRunner
 from support.dense_search import dense_search, derivatives
 
@@ -251,16 +252,13 @@ def test_range_on_the_command_line(tmp_path: Path) -> None:
 def test_a_free_length_of_zero_beside_one_that_is_a_number() -> None:
     """One angle, two springs: the parameter is zero and the number is not, so that the point tells
     both. The poses are those of a dense look at the energy's slope."""
-    mechanism = {
-        "parameters": {"l0": {"kind": "free length"}, "F": {"kind": "force"}},
-        "unknowns": {"th": "angle"},
-        "points": {"A": [2, 0], "B": [0, 2], "P": ["cos(th)", "sin(th)"]},
-        "springs": [
-            {"between": ["A", "P"], "k": 1, "free": "l0"},
-            {"between": ["B", "P"], "k": 1, "free": "1/2"},
-        ],
-        "loads": {"P": ["F", 0]},
-    }
+    mechanism = yaml.safe_load("""
+        parameters: {l0: {kind: free length}, F: {kind: force}}
+        unknowns: {th: angle}
+        points: {A: [2, 0], B: [0, 2], P: [cos(th), sin(th)]}
+        springs: [{between: [A, P], k: 1, free: l0}, {between: [B, P], k: 1, free: 1/2}]
+        loads: {P: [F, 0]}
+    """)
     record = {"name": "two", "mechanism": mechanism, "axes": {"F": [-1, 1], "l0": [0, 1]}}
     poses = solve(record, F="1/3", l0=0)
     assert poses.status is Status.CERTIFIED and poses.parameters["l0"] == 0

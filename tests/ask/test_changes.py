@@ -8,6 +8,7 @@ from fractions import Fraction
 from typing import Any
 
 import pytest
+import yaml
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from support.examples import examples
@@ -174,11 +175,11 @@ def test_random_quadrics(quadric: tuple[int, ...], plane: tuple[int, ...]) -> No
 def test_bad_questions_and_limits_are_told() -> None:
     with pytest.raises(ConfigError, match="is not between 0 and 1"):
         ptmcad.changes(of("u^2 - c", -1, 3), tolerance=0)
-    free_length = {
-        "axes": {"rho": [0, 2], "L2": [0, 2]},
-        "parameters": {"l0": "1/5"},
-        "free": {"F3": [-4, 0]},
-    }
+    free_length = yaml.safe_load("""
+        axes: {rho: [0, 2], L2: [0, 2]}
+        parameters: {l0: 1/5}
+        free: {F3: [-4, 0]}
+    """)
     with pytest.raises(ConfigError, match="certified engine"):
         ptmcad.changes(free_length)
     with pytest.raises(ConfigError, match="choose stable"):
@@ -190,11 +191,11 @@ def test_bad_questions_and_limits_are_told() -> None:
                                                                      "equations": ["(u - c*a)^2"]}})  # fmt: skip
 
 
-LOADS = {
-    "axes": {"rho": [0, 2], "L2": [0, 2]},
-    "parameters": {"F3": "F", "F4": "F"},
-    "free": {"F": [-40, 0]},
-}
+LOADS = yaml.safe_load("""
+axes: {rho: [0, 2], L2: [0, 2]}
+parameters: {F3: F, F4: F}
+free: {F: [-40, 0]}
+""")
 
 
 @pytest.mark.slow

@@ -9,6 +9,7 @@ from fractions import Fraction
 from typing import Any
 
 import pytest
+import yaml
 from flint import fmpq
 from support.signatures import signature
 
@@ -63,8 +64,10 @@ def test_solve_counts_what_the_map_counts(
 
 
 def test_solve_says_that_excluded_solutions_coincide() -> None:
-    record = {"system": {"unknowns": {"x": "real"}, "equations": ["(x + 1)^2*(x - a)*(x - b)"], "positive": ["x"]},
-              "axes": {"a": [1, 2], "b": [3, 4]}}  # fmt: skip
+    record = yaml.safe_load("""
+        system: {unknowns: {x: real}, equations: [(x + 1)^2*(x - a)*(x - b)], positive: [x]}
+        axes: {a: [1, 2], b: [3, 4]}
+    """)
     found = ptmcad.solve(model=slice_from(record).model, a="3/2", b="7/2")
     assert (len(found.equilibria), found.status) == (2, Status.EXACT)
     assert found.remark == "two solutions that an inequality excludes coincide"
@@ -147,12 +150,20 @@ def test_check_does_not_count_more_than_it_can_at_once(system: dict[str, Any], b
 
 
 MANY_SIDES = [
-    ({"unknowns": {"x": "real", "y": "real", "t": "angle"},
-      "equations": ["x^2*cos(t) + y - a*sin(t)", "y^2*sin(t) - x*b", "x*y - cos(t)/5 + x^2"],
-      "positive": ["x + 2", "y + 2", "sin(t) + 1/2", "3 - x^2 - y^2"]}, 22),
-    ({"unknowns": {"t": "angle", "s": "angle", "x": "real", "y": "real"},
-      "equations": ["cos(t) + x*sin(s) - a", "sin(t) + y - b/2", "x^2 + y^2 - 2 + cos(s)/3", "cos(s - t) - y/3 - x/5"],
-      "positive": ["x + y + 1", "cos(t) + 3/4"]}, 16),
+    (yaml.safe_load("""
+unknowns: {x: real, y: real, t: angle}
+equations: [x^2*cos(t) + y - a*sin(t), y^2*sin(t) - x*b, x*y - cos(t)/5 + x^2]
+positive: [x + 2, y + 2, sin(t) + 1/2, 3 - x^2 - y^2]
+"""), 22),
+    (yaml.safe_load("""
+unknowns: {t: angle, s: angle, x: real, y: real}
+equations:
+  - cos(t) + x*sin(s) - a
+  - sin(t) + y - b/2
+  - x^2 + y^2 - 2 + cos(s)/3
+  - cos(s - t) - y/3 - x/5
+positive: [x + y + 1, cos(t) + 3/4]
+"""), 16),
 ]  # fmt: skip
 
 

@@ -11,25 +11,22 @@ from typing import Any
 import numpy as np
 import pytest
 import sympy
+import yaml
 
 import ptmcad
 from ptmcad.errors import ConfigError
 from ptmcad.exact.point_system import DegeneratePoint
 from ptmcad.model import described
 
-PENDULUM: dict[str, Any] = {
-    "name": "pendulum",
-    "parameters": {
-        "k": {"kind": "stiffness", "default": 1},
-        "W": {"kind": "force"},
-        "H": {"kind": "force"},
-    },
-    "unknowns": {"th": "angle"},
-    "points": {"O": [0, 0], "P": ["sin(th)", "cos(th)"], "G": [0, "cos(th)"]},
-    "bars": [["O", "P"]],
-    "springs": [{"between": ["G", "P"], "k": "k"}],
-    "loads": {"P": ["H", "-W"]},
-}
+PENDULUM: dict[str, Any] = yaml.safe_load("""
+name: pendulum
+parameters: {k: {kind: stiffness, default: 1}, W: {kind: force}, H: {kind: force}}
+unknowns: {th: angle}
+points: {O: [0, 0], P: [sin(th), cos(th)], G: [0, cos(th)]}
+bars: [[O, P]]
+springs: [{between: [G, P], k: k}]
+loads: {P: [H, -W]}
+""")
 AXES = {"H": ["-3/2", "3/2"], "W": ["-3/2", "3/2"]}
 
 

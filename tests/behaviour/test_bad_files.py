@@ -16,6 +16,7 @@ from typing import Any
 
 import pytest
 import yaml
+from support.cases import cases
 
 import ptmcad
 from ptmcad.cli import run
@@ -119,20 +120,7 @@ def _read(
 
 @pytest.mark.parametrize(
     ("kind", "path", "value", "words"),
-    [
-        ("exact", ("slice", "text"), {"d": "1"}, "slice.text has the unknown key 'd'"),
-        ("exact", ("slice", "parameters"), {"a": "a", "b": "b"}, "there is no value of c"),
-        ("exact", ("slice", "parameters", "d"), "1", "there is no parameter d"),
-        ("poses", ("parameters",), {}, "there is no value of a"),
-        ("exact", ("regions", 0), {"stable": 1}, "regions[0] lacks the key 'total'"),
-        ("exact", ("cells", 0, "sample", "a"), 7, "cells[0].sample.a is not a text"),
-        ("exact", ("regions", 0, "index"), [], "region 0 has index ()"),
-        ("family", ("name",), None, "name is not a text"),
-        ("family", ("free",), {"name": "c", "low": "0"}, "free lacks the key 'high'"),
-        ("family", ("members", 0, "value"), [], "members[0].value is not a text"),
-        ("family", ("surfaces", 0), [], "a surface has no terms"),
-        ("poses", ("digits",), "x", "digits is not an integer"),
-    ],
+    cases("bad_files", "faults"),
 )
 def test_a_fault_names_the_keys_place(
     folder: Path,
@@ -210,8 +198,10 @@ def test_a_kill_leaves_nothing_of_msolve(tmp_path: Path, to: str) -> None:
     waits = f"import pathlib, time\npathlib.Path({str(asked)!r}).touch()\ntime.sleep(600)\n"
     program.write_text(f"#!{sys.executable}\n{waits}")
     program.chmod(0o755)
-    record = {"system": {"unknowns": {"x": "real", "y": "real"}, "equations": ["x^2 - a", "y^2 - b"]},
-              "axes": {"a": [1, 2], "b": [1, 2]}}  # fmt: skip
+    record = yaml.safe_load("""
+        system: {unknowns: {x: real, y: real}, equations: [x^2 - a, y^2 - b]}
+        axes: {a: [1, 2], b: [1, 2]}
+    """)
     (tmp_path / "record.yaml").write_text(json.dumps(record))
     command = [
         sys.executable,

@@ -19,6 +19,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from support.cases import cases
 
 import ptmcad
 from ptmcad.cli import run
@@ -51,53 +52,6 @@ def test_the_program_alone_prints_its_help(capfd: pytest.CaptureFixture[str]) ->
     out, err = capfd.readouterr()
     assert out.startswith("Usage: ptmcad ") and "classify" in out and "\\n" not in out and err == ""
     assert max(map(len, out.splitlines())) < 80
-
-
-@pytest.mark.parametrize(
-    ("command", "suggestion"),
-    [
-        ("clasify", "'classify'"),
-        ("--verison", "'--version'"),
-        ("classify --hlep", "'--help'"),
-        ("classify fig4 --set l1=3", "'L1'"),
-        ("classify fig4 --slise rho,L2", "'--slice'"),
-        ("classify --slice roh,L2", "'rho'"),
-        ("classify fig4 --set L22=3", "'L2'"),
-        ("solve --at L22=3", "'L2'"),
-        ("range fig4 --along rh --at L2=1", "'rho'"),
-        ("classify fig44", "'fig4'"),
-        ("check duffin", "'duffing'"),
-        ("solve fig4.yaml --at rho=1,L2=1", "'fig4'"),
-        ("design kuramot", "'kuramoto'"),
-        ("init pendulm", "'pendulum'"),
-    ],
-)
-def test_what_is_misspelt_is_suggested(
-    command: str, suggestion: str, folder: Path, capfd: pytest.CaptureFixture[str]
-) -> None:
-    assert f"did you mean {suggestion}?" in refusal(command.split(), capfd)
-
-
-@pytest.mark.parametrize(
-    ("command", "start"),
-    [
-        ("classify fig4 --jobs 0", "--jobs: "),
-        ("classify fig4 --count stabel", "--count: "),
-        ("classify fig4 --format jpg", "--format: "),
-        ("classify fig4 --tolerance 2", "--tolerance: "),
-        ("classify fig4 --timeout 0", "--timeout: "),
-        ("range fig4", "--along: is missing"),
-        ("locate", "RESULT: is missing"),
-        ("locate nothing.json --at rho=1,L2=1", "nothing.json: there is no such file"),
-        ("classify fig4 --set L1=pi", "--set L1: "),
-        ("classify fig4 one two", "got unexpected extra arguments (one two)"),
-    ],
-)
-def test_all_that_is_refused_has_one_form(
-    command: str, start: str, folder: Path, capfd: pytest.CaptureFixture[str]
-) -> None:
-    """``error: WHERE: WHAT``, whether an option's parser or the program itself refuses."""
-    assert refusal(command.split(), capfd).startswith(f"error: {start}")
 
 
 # ------------------------------------------------------------------------------------------------------------- floats
@@ -283,32 +237,7 @@ def test_lines_and_the_bar_stay_apart(folder: Path) -> None:
 
 @pytest.mark.parametrize(
     ("text", "remedy"),
-    [
-        ("sqrt(2)", "write a number near it"),
-        ("√2", "write a rational number near the root"),
-        ("exp(1)", "write a rational number near its value"),
-        ("ln(2)", "write a rational number near its value"),
-        ("tan(1)", "write sin(...) in its place"),
-        ("abs(rho)", "a record for each case"),
-        ("pi", "such as 355/113"),
-        ("π", "such as 355/113"),
-        ("inf", "write a large number"),
-        ("-.inf", "write a large number"),
-        (".NaN", "all values are finite"),
-        ("|rho|", "write the square, or a record for each case"),
-        ("∞", "write a large number"),
-        ("10 mm", "write all lengths in one unit"),
-        ("10mm", "write all lengths in one unit"),
-        ("30 deg", "by its cosine and sine"),
-        ("30°", "by its cosine and sine"),
-        ("rho^n", "the names are"),
-        ("rho^(1/2)", "make a root itself a parameter or an unknown"),
-        ("2^rho", "write one, such as 2"),
-        ("1,5", "write a decimal point"),
-        ("−1", "write -"),
-        ("50%", "write a share as a fraction"),
-        ("1e4000", "a decimal exponent is at most 1000"),
-    ],
+    cases("first_minute", "values"),
 )
 def test_a_message_says_what_to_write_instead(
     text: str, remedy: str, folder: Path, capfd: pytest.CaptureFixture[str]
@@ -325,17 +254,7 @@ def test_a_message_says_what_to_write_instead(
 
 @pytest.mark.parametrize(
     ("equation", "remedy"),
-    [
-        ("x/(1 + x) - a", "multiply an equation by its denominator"),
-        ("x^-1 - a", "multiply an equation by its denominator"),
-        ("x^n - a", "the exponent is not an integer: write one"),
-        ("x^(1/2) - a", "make a root itself a parameter or an unknown"),
-        ("sqrt(x) - a", "let r be an unknown"),
-        ("exp(x) - a", "make its value the unknown"),
-        ("x - a*pi", "such as 355/113"),
-        ("x - inf", "write a large number"),
-        ("x - 10 mm", "write all lengths in one unit"),
-    ],
+    cases("first_minute", "equations"),
 )
 def test_a_message_says_what_to_write_instead_in_an_equation(
     equation: str, remedy: str, folder: Path, capfd: pytest.CaptureFixture[str]

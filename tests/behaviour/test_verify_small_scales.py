@@ -87,8 +87,11 @@ def test_a_true_map_is_accepted(name: str) -> None:
 
 def test_a_map_without_areas_in_a_window_whose_area_is_no_decimal() -> None:
     """The whole window's area is rounded up then."""
-    record = {"name": "cubic", "system": {"parameters": {"a": {}, "b": {}}, "unknowns": {"x": "real"},
-              "potential": "x^4/4 + a*x^2/2 + b*x"}, "axes": {"a": ["-1/3", "1/3"], "b": [-1, "1/7"]}}  # fmt: skip
+    record = yaml.safe_load("""
+        name: cubic
+        system: {parameters: {a: {}, b: {}}, unknowns: {x: real}, potential: x^4/4 + a*x^2/2 + b*x}
+        axes: {a: [-1/3, 1/3], b: [-1, 1/7]}
+    """)
     document = json.loads(ptmcad.classify(record, areas=False).to_json())
     report = verified(document)
     assert report.ok, report.violation

@@ -13,6 +13,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+import yaml
 
 pytest.importorskip("numba")
 
@@ -23,23 +24,15 @@ from ptmcad.certified.plain.pointcounts import plain_counter as point_counter
 from ptmcad.model.builtinmechanisms import RECORD
 from ptmcad.question.slice import Count, Slice
 
-FLAT_CONE = {
-    "parameters": {"rho": 2, "L1": 1, "L2": 1, "k": 100, "F3": "100*f", "F4": "-100*f"},
-    "axes": {"f": ["1/10", "3/10"], "l0": ["1/10", "3/10"]},
-}
+FLAT_CONE = yaml.safe_load("""
+parameters: {rho: 2, L1: 1, L2: 1, k: 100, F3: 100*f, F4: -100*f}
+axes: {f: [1/10, 3/10], l0: [1/10, 3/10]}
+""")
 """At th = (0, 0) spring 3 has no length; for f = l0 its push balances the loads."""
-CREASE = {
-    "parameters": {
-        "rho": 1,
-        "L1": 1,
-        "L2": "3/2",
-        "k": 100,
-        "F3": "100*f",
-        "F4": "100*g",
-        "l0": "1/5",
-    },
-    "axes": {"f": ["-3/2", "-1/2"], "g": ["1/2", "3/2"]},
-}
+CREASE = yaml.safe_load("""
+parameters: {rho: 1, L1: 1, L2: 3/2, k: 100, F3: 100*f, F4: 100*g, l0: 1/5}
+axes: {f: [-3/2, -1/2], g: [1/2, 3/2]}
+""")
 """At th1 = 0 spring 2 has no length, whatever th2 is."""
 MECHANISMS = {
     "refined": "ptm",

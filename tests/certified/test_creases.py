@@ -60,22 +60,22 @@ def record(mechanism: dict[str, Any], count: str = "index", **axes: list[Any]) -
     }
 
 
-CRANK: dict[str, Any] = {
-    "unknowns": {"th": "angle"},
-    "points": {"O": [0, 0], "A": [1, 0], "P": ["cos(th)", "sin(th)"]},
-    "bars": [["O", "P"]],
-    "springs": [{"between": ["A", "P"], "k": 1, "free": "l"}],
-    "loads": {"P": ["F", "G"]},
-}
+CRANK: dict[str, Any] = yaml.safe_load("""
+unknowns: {th: angle}
+points: {O: [0, 0], A: [1, 0], P: [cos(th), sin(th)]}
+bars: [[O, P]]
+springs: [{between: [A, P], k: 1, free: l}]
+loads: {P: [F, G]}
+""")
 """With t = th/2 and s = sin t the energy is 2 s^2 - 2 l s - F (1 - 2 s^2) - G sin 2t, up to a
 constant.
 """
-PAIR: dict[str, Any] = {
-    "unknowns": {"a": "angle", "b": "angle"},
-    "points": {"O": [0, 0], "P": ["cos(a)", "sin(a)"], "Q": ["cos(b)", "sin(b)"]},
-    "springs": [{"between": ["P", "Q"], "k": 1, "free": "l"}],
-    "loads": {"P": ["F", "G"], "Q": ["F", "G"]},
-}
+PAIR: dict[str, Any] = yaml.safe_load("""
+unknowns: {a: angle, b: angle}
+points: {O: [0, 0], P: [cos(a), sin(a)], Q: [cos(b), sin(b)]}
+springs: [{between: [P, Q], k: 1, free: l}]
+loads: {P: [F, G], Q: [F, G]}
+""")
 """Two cranks on one shaft, with a spring between their pins, both pulled by the same force."""
 
 
@@ -153,12 +153,12 @@ def test_three_creases_have_the_equilibria_of_a_dense_search() -> None:
     assert count.index == (3, 4, 0)
 
 
-ARM: dict[str, Any] = {
-    "unknowns": {"a": "angle", "x": "length"},
-    "points": {"O": [0, 0], "S": ["x*cos(a)", "x*sin(a)"]},
-    "springs": [{"between": ["O", "S"], "k": 1, "free": "l"}],
-    "loads": {"S": ["F", "G"]},
-}
+ARM: dict[str, Any] = yaml.safe_load("""
+unknowns: {a: angle, x: length}
+points: {O: [0, 0], S: [x*cos(a), x*sin(a)]}
+springs: [{between: [O, S], k: 1, free: l}]
+loads: {S: [F, G]}
+""")
 """A slider with a spring along an arm that turns: as a point of the plane it has two places, half a
 turn apart.
 """

@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+import yaml
 from support.dense_search import dense_search
 
 pytest.importorskip("numba")
@@ -26,30 +27,19 @@ CONE = "point where spring A3A4 has no length"
 EQUAL_BARS = {"L1": 1.0, "L2": 1.0, "F3": -0.1, "F4": -0.1, "F3x": 0.0, "F4x": 0.0}
 EQUAL_BARS |= {f"{name}{i}": value for i in (1, 2, 3) for name, value in (("k", 1.0), ("l0_", 0.2))}
 """Over k."""
-BAND: dict[str, Any] = {
-    "name": "band",
-    "mechanism": {
-        "parameters": {
-            "h": {"kind": "number"},
-            "F": {"kind": "force"},
-            "l": {"kind": "free length", "default": "1/2"},
-        },
-        "unknowns": {"u": "length", "t": "angle"},
-        "points": {
-            "O": [0, 0],
-            "M": [0, "h"],
-            "S": ["u", 0],
-            "P": ["u + cos(t)", "sin(t)"],
-            "E": [3, 1],
-        },
-        "bars": [["S", "P"]],
-        "supports": {"M": "pin", "E": "pin"},
-        "springs": [{"between": ["M", "S"], "k": 1, "free": "l"}, {"between": ["P", "E"], "k": 1}],
-        "loads": {"S": ["F", 0]},
-    },
-    "axes": {"h": [-1, 1], "F": [-4, 1]},
-    "count": "index",
-}
+BAND: dict[str, Any] = yaml.safe_load("""
+name: band
+mechanism:
+  parameters: {h: {kind: number}, F: {kind: force}, l: {kind: free length, default: 1/2}}
+  unknowns: {u: length, t: angle}
+  points: {O: [0, 0], M: [0, h], S: [u, 0], P: [u + cos(t), sin(t)], E: [3, 1]}
+  bars: [[S, P]]
+  supports: {M: pin, E: pin}
+  springs: [{between: [M, S], k: 1, free: l}, {between: [P, E], k: 1}]
+  loads: {S: [F, 0]}
+axes: {h: [-1, 1], F: [-4, 1]}
+count: index
+""")
 """A slider on a spring to a point beside its guide, with a bar that a second spring pulls."""
 
 

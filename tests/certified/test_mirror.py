@@ -8,6 +8,7 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
+import yaml
 from numpy.typing import NDArray
 from support.dense_search import dense_search
 
@@ -73,12 +74,11 @@ def test_a_minimum_that_two_springs_without_length_absorb_is_kept() -> None:
     """At rho = L the ends of springs 1 and 2 are at their pivots for th = 0, and both push as hard
     as the loads do.
     """
-    slice = ptmcad.slice_from_mapping(
-        {
-            "parameters": {"L1": 1, "L2": 1, "k": 100, "F3": "F", "F4": "F", "l0": "1/5"},
-            "axes": {"rho": ["1/2", "3/2"], "F": ["-30", "-10"]},
-        }
-    )
+    record = yaml.safe_load("""
+        parameters: {L1: 1, L2: 1, k: 100, F3: F, F4: F, l0: 1/5}
+        axes: {rho: [1/2, 3/2], F: ['-30', '-10']}
+    """)
+    slice = ptmcad.slice_from_mapping(record)
     counter = plain_counter(slice)
     inside, beyond = (
         counter.at(Fraction(1), y, Count.STABLE).stable for y in (Fraction(-19), Fraction(-21))

@@ -81,8 +81,11 @@ def test_bound_of_a_length_is_proved_or_the_slice_refused() -> None:
     assert (
         low == -high and 1.5 < high <= 4
     )  # 2 h = f + 2 h/l with |f| < 1 has no solution beyond 3/2
-    ramp = {"name": "ramp", "system": {"unknowns": {"x": "real"}, "potential": "a*x + b*x^3"},
-            "axes": {"a": [-1, 1], "b": [-1, 1]}}  # fmt: skip
+    ramp = yaml.safe_load("""
+        name: ramp
+        system: {unknowns: {x: real}, potential: a*x + b*x^3}
+        axes: {a: [-1, 1], b: [-1, 1]}
+    """)
     unbounded = slice_from_mapping(ramp)
     with pytest.raises(ConfigError, match="no bound of the unknown x"):
         ranges(problem_of(unbounded), unbounded.axes)
@@ -174,8 +177,11 @@ def test_what_the_plain_formulas_do_not_take_is_refused_by_name() -> None:
 
 
 def test_equations_without_a_potential_are_counted() -> None:
-    cusp = {"name": "cusp", "system": {"unknowns": {"x": "real"}, "equations": ["x^3 - a*x + b"]},
-            "axes": {"a": [-2, 2], "b": [-2, 2]}}  # fmt: skip
+    cusp = yaml.safe_load("""
+        name: cusp
+        system: {unknowns: {x: real}, equations: [x^3 - a*x + b]}
+        axes: {a: [-2, 2], b: [-2, 2]}
+    """)
     slice = slice_from_mapping(cusp)
     exact, certified = (
         ptmcad.classify(slice),

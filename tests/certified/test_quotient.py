@@ -132,24 +132,21 @@ def found(slice: Slice) -> Involution | None:
 
 def test_a_branch_has_the_mirrors_that_keep_its_sides() -> None:
     """Of a slider's spring along its guide, one side of which an involution takes to the other."""
-    slice = slice_from_mapping(
-        {
-            "name": "slider",
-            "mechanism": {
-                "parameters": {"l": {"kind": "length"}, "m": {"kind": "length"}},
-                "unknowns": {"u": "length", "w": "length"},
-                "points": {"O": [0, 0], "A": ["u", 0], "P": [0, "w"]},
-                "supports": {"O": "pin"},
-                "springs": [
-                    {"between": ["O", "A"], "k": 1, "free": "l"},
-                    {"between": ["A", "P"], "k": 1, "free": "m"},
-                    {"between": ["O", "P"], "k": 1},
-                ],
-            },
-            "parameters": {},
-            "axes": {"l": [1, 2], "m": [1, 2]},
-        }
-    )
+    slider = yaml.safe_load("""
+        name: slider
+        mechanism:
+          parameters: {l: {kind: length}, m: {kind: length}}
+          unknowns: {u: length, w: length}
+          points: {O: [0, 0], A: [u, 0], P: [0, w]}
+          supports: {O: pin}
+          springs:
+            - {between: [O, A], k: 1, free: l}
+            - {between: [A, P], k: 1, free: m}
+            - {between: [O, P], k: 1}
+        parameters: {}
+        axes: {l: [1, 2], m: [1, 2]}
+    """)
+    slice = slice_from_mapping(slider)
     sides = branches(problem_of(slice), slice.axes)
     assert len(sides) == 2
     for side in sides:

@@ -145,16 +145,15 @@ def test_classify_says_at_once_that_it_will_take_long(
 def test_equations_with_long_parameters_are_not_waited_for(monkeypatch: pytest.MonkeyPatch) -> None:
     """The certified engine's, in which parameters are functions of the axes."""
     monkeypatch.setattr(checking, "MAX_EXPANDING", 0.5)
-    slice = slice_from_mapping({
-        "mechanism": {
-            "parameters": {"L": {"kind": "length"}, "W": {"kind": "force"}},
-            "unknowns": {"th": "angle"},
-            "points": {"A": ["-2", "0"], "P": ["(L+W+sin(th))^8", "L*cos(th)"]},
-            "springs": [{"between": ["A", "P"], "k": "1", "free": "1"}],
-        },
-        "parameters": {"L": "(u+v+1)^16/(u+2)^3", "W": "(v+1)^20/(u^2+v+1)"},
-        "axes": {"u": [0, 2], "v": [0, 3]},
-    })  # fmt: skip
+    slice = slice_from_mapping(yaml.safe_load("""
+        mechanism:
+          parameters: {L: {kind: length}, W: {kind: force}}
+          unknowns: {th: angle}
+          points: {A: ['-2', '0'], P: [(L+W+sin(th))^8, L*cos(th)]}
+          springs: [{between: [A, P], k: '1', free: '1'}]
+        parameters: {L: (u+v+1)^16/(u+2)^3, W: (v+1)^20/(u^2+v+1)}
+        axes: {u: [0, 2], v: [0, 3]}
+    """))  # fmt: skip
     found = check(slice)
     assert found.engine == "certified" and found.cost.startswith(
         "not known: with such long expressions"
@@ -174,9 +173,10 @@ def test_what_is_known_is_printed_before_the_rest_is_stopped(
 
 
 def test_a_proof_that_takes_long_is_ended(monkeypatch: pytest.MonkeyPatch) -> None:
-    slice = slice_from_mapping({
-        "system": {"unknowns": {"x": "real"}, "equations": ["(x - a)^2"]}, "axes": {"a": [-2, 2], "b": [-2, 2]},
-    })  # fmt: skip
+    slice = slice_from_mapping(yaml.safe_load("""
+        system: {unknowns: {x: real}, equations: [(x - a)^2]}
+        axes: {a: [-2, 2], b: [-2, 2]}
+    """))  # fmt: skip
     with pytest.raises(DegenerateSliceError, match="only 1 of 2 solutions are different"):
         check(slice)
     monkeypatch.setattr(checking, "MAX_SECONDS", 0.001)

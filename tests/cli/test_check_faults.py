@@ -7,6 +7,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
+from support.cases import cases
 
 from ptmcad.cli import run
 from ptmcad.errors import MAX_FAULTS
@@ -55,86 +56,6 @@ def test_what_free_lengths_do_not_go_with_is_told_with_its_place(
     (fault,) = faults_of(FREE, tmp_path, capsys)
     assert fault.startswith("3: mechanism.unknowns.x: no bound")
     assert "narrow the win" in fault and "choose exact" not in fault
-
-
-SLICE = "axes: {rho: [0, 1], L2: [1, 2]}\n"
-
-
-TOGETHER = [
-    ("parameters: {k: -1}\n" + SLICE, ["1: parameters.k: k is -1"]),
-    (
-        "parameters: {l0: -1, k2: -2}\n" + SLICE,
-        ["1: parameters.k2: k2 is -2", "1: parameters.l0: l0 is -1"],
-    ),
-    (
-        "mechanism:\n  unknowns: {th: angle}\n  points: 7\n  bodies: {b: {at: O, angle: th, points: {Q: [1, 0]}}}\n"
-        "  springs: [{between: [A, P], k: 1}]\n  loads: {P: [0, 1]}\n" + SLICE,
-        ["3: mechanism.points: expected a mapping"],
-    ),
-    (
-        "mechanism:\n  unknowns: {th: angle}\n  bars: [[O, P]]\n  supports: {O: pin}\n" + SLICE,
-        ["1: mechanism.points: is missing"],
-    ),
-    (
-        SLICE + "units: {length: 5, mass: kg, force: []}\n",
-        [
-            "2: units.length: a unit",
-            "2: units.mass: unknown",
-            "2: units.force: expected a text",
-        ],
-    ),
-    (
-        "parameters: {F3: F}\nfree: {F: [-10, 0]}\nmembers: [5, x, -3, 1/0, -3]\n" + SLICE,
-        [
-            "3: members.1: 5 is outside",
-            "3: members.2: the value of a",
-            "3: members.4: division",
-            "3: members.5: -3 is",
-        ],
-    ),
-    (
-        "axes: {L2: [0, 2], rho: [3, 0], Z: [0, 1]}\n",
-        ["1: axes: 3 axes are given", "1: axes.rho: the range of rho is reversed"],
-    ),
-    ("axes: [rho, L2]\n", ["1: axes: expected two axes"]),
-    ("axes:\n", ["1: axes: expected two axes"]),
-    ("axes: {}\n", ["1: axes: 0 axes are given"]),
-    (
-        "axes: {rho: 2, L2: [0]}\n",
-        ["1: axes.rho: expected a range", "1: axes.L2: expected a range"],
-    ),
-    ("parameters: {k: 1}\n", ["1: axes: is missing"]),
-    (
-        "system: {unknowns: x, equations: [x^2]}\n" + SLICE,
-        ["1: system.unknowns: expected a mapping"],
-    ),
-    ("free: F\n" + SLICE, ["1: free: expected one parameter with its range"]),
-    (
-        "parameters: {k1: L1*rho, L1: k1 + t}\n" + SLICE,
-        [
-            "1: parameters.L1: unknown name 't'",
-            "1: parameters.L1: the definition goes round in a circle",
-        ],
-    ),
-    (
-        "parameters: {k1: L1 +, L2: 2*(}\naxes: {rho: [0, 1], W: [1, 2]}\n",
-        ["1: parameters.L2: ", "1: parameters.k1: "],
-    ),
-    (
-        "mechanism: {unknowns: {th: angel}, points: {P: [cos(th), 0]}}\n"
-        "system: {unknowns: {x: real}, equations: [x^2 - a*]}\n" + SLICE,
-        [
-            "1: mechanism.unknowns.th: ",
-            "2: system.equations.1: ",
-            "2: system: a record is about",
-        ],
-    ),
-    (
-        "mechanism: nosuch.yaml\n" + SLICE,
-        ["1: mechanism: 'nosuch.yaml': there is no such file"],
-    ),
-]
-"""Faults of one record, and none that follows from another."""
 
 
 def test_every_fault_of_a_list_of_aliases_is_told(
@@ -208,19 +129,7 @@ mechanism:
 
 @pytest.mark.parametrize(
     ("stiffness", "says"),
-    [
-        ("-1", "a stiffness is positive, but this is -1"),
-        ("0", "a stiffness is positive, but this is 0"),
-        ("0*L", "a stiffness is positive, but this is 0*L = 0"),
-        (
-            "W - 1",
-            "a stiffness must be positive in the whole window, but W - 1 is -1/4 at L = 1, W = 3/4",
-        ),
-        (
-            "L - 3",
-            "a stiffness must be positive in the whole window, but L - 3 is -2 at L = 1, W = 3/2",
-        ),
-    ],
+    cases("check_faults", "stiffnesses"),
 )
 def test_a_stiffness_written_in_a_spring_is_proved_positive(
     stiffness: str, says: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
@@ -260,63 +169,10 @@ def test_a_stiffness_is_positive_at_a_single_point_too(
     )
 
 
-PTM = "mechanism: ptm\naxes: {rho: [0, 2], L2: [0, 2]}\n"
-
-
 @pytest.mark.parametrize(
     ("text", "starts"),
-    [
-        *TOGETHER,
-        (PTM + "count: admissible\n", ["3: count: admissible asks that every spring is longer"]),
-        (PTM + "free: {l0: [0, 1]}\ncount: admissible\n", ["4: count: admissible asks that every spring is longer"]),
-        (
-            "parameters: {L1: abc, F3: 1/0, F4: [1]}\naxes: {rho: [2, 0], L2: [0]}\n",
-            ["1: parameters.F4: expected a num", "1: parameters.L1: unknown name", "1: parameters.F3: division by zero",
-             "2: axes.L2: expected a range", "2: axes.rho: the range of rho is rev"],
-        ),
-        (
-            "parameters: {L1: -1, k: -5, F3: 1/(rho-1)}\naxes: {rho: [-1, 2], L2: [-3, 2]}\n",
-            ["1: parameters.L1: L1 is -1", "1: parameters.k: k is -5", "1: parameters.F3: division by zero inside",
-             "2: axes.rho: the range of rho goes", "2: axes.L2: the range of L2 goes"],
-        ),
-        (
-            "system:\n  unknowns: {x: real, y: real}\n  equations: [x^2+y, x-abc, sin(x)]\n  positive: [y, z]\n"
-            "  stable: [q]\naxes: {a: [0, 1], b: [0, 1]}\n",
-            ["3: system.equations.3: x is not an unknown angle", "3: system.equations: 3 equations for 2 unknowns",
-             "3: system.equations.2: abc has no value", "4: system.positive.2: z has no value",
-             "5: system.stable.1: q has no value"],
-        ),
-        (
-            "notes: [1]\nfree: x\nmembers: q\nsweep: 1\ndesign: 2\n" + PTM,
-            ["2: free: expected one parameter", "3: members: q is neither how many", "4: sweep: expected parameters",
-             "5: design: expected what is designed"],
-        ),
-        (
-            "axes: {L: [-1, 2], W: [0, 3]}\n" + SPRUNG % (", k: {kind: length, default: -1}", "k", "0", "1"),
-            ["1: axes.L: the range of L goes below zero", "3: mechanism.parameters.k.default: k is -1"],
-        ),
-        (
-            "axes: {L: [0], W: [0, 3]}\n" + SPRUNG % ("", "-1", "0", "1"),
-            ["1: axes.L: expected a range", "7: mechanism.springs.1.k: a stiffness is positive"],
-        ),
-        (
-            AXES + SPRUNG % (", k: {default: 1}", "-1", "0", "1"),
-            ["3: mechanism.parameters.k: nothing uses k", "7: mechanism.springs.1.k: a stiffness is positive"],
-        ),
-        (
-            "axes: {rho: [0, 1, 2], u: [0, 1]}\nparameters: {L1: 2*rho, L2: u - 3, F3: w}\n",
-            ["1: axes.rho: expected a range", "2: parameters.F3: unknown name 'w'"],
-        ),
-        (
-            "parameters: {L1: -1, F3: F}\nfree: {F: [1, 0]}\n" + PTM,
-            ["1: parameters.L1: L1 is -1", "2: free.F: the range of F is reversed"],
-        ),
-        (
-            "parameters: {L1: -1, F3: F}\nsweep: {F: []}\n" + PTM,
-            ["1: parameters.L1: L1 is -1", "2: sweep.F: the list is empty"],
-        ),
-    ],
-)  # fmt: skip
+    cases("check_faults", "together"),
+)
 def test_no_fault_keeps_others_from_being_told(
     text: str, starts: list[str], tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -344,17 +200,7 @@ def test_a_model_without_parameters_is_not_asked_for_one(
 
 @pytest.mark.parametrize(
     ("spring", "says"),
-    [
-        (
-            "springs: [{between: [A, P], k: 1}, {between: [A, O], k: 1}]",
-            "springs.2: the length of AO is constant",
-        ),
-        (
-            "springs: [{between: [A, P], k: 1}, {between: [O, P], k: L}]",
-            "springs.2: the length of OP is constant",
-        ),
-        ("torsion: [{angle: th - th, k: L}]", "torsion.1: no unknown changes its angle"),
-    ],
+    cases("check_faults", "idle springs"),
 )
 def test_a_spring_that_does_nothing_is_a_fault(
     spring: str, says: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
@@ -369,16 +215,7 @@ def test_a_spring_that_does_nothing_is_a_fault(
 
 @pytest.mark.parametrize(
     ("text", "says"),
-    [
-        (
-            "name: x\naxes:\n\trho: [0, 1]\n",
-            "3: is not YAML: a tab stands where YAML takes spaces only",
-        ),
-        (
-            "name: x\ntitle: @x\n",
-            "2: is not YAML: the character '@' cannot stand at the beginning of a value",
-        ),
-    ],
+    cases("check_faults", "characters"),
 )
 def test_a_character_that_yaml_does_not_take_is_named(
     text: str, says: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]

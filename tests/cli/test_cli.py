@@ -137,44 +137,6 @@ def test_slice_options_formats_and_explain(
     assert lines[-4:-1] == ["decided on the way:", *map(str, StandIn.plan), "table of slice-L2-rho"]
 
 
-@pytest.mark.parametrize(
-    ("arguments", "part"),
-    [
-        (["classify", "missing.yaml"], "error: missing.yaml: there is no such file"),
-        (["classify"], "error: give a problem record"),
-        (["classify", "--slice", "L2,rho", "--set", "L1=0"], "error: --set L1: L1 is 0"),
-        (
-            ["classify", "--slice", "L2,rho", "--area-tolerance", "2"],
-            "error: --area-tolerance: 2 is not between",
-        ),
-        (
-            ["classify", "--slice", "L2,rho", "--format", "gif"],
-            "gif is not among json, png, svg, pdf",
-        ),
-        (["classify", "--slice", "L2,rho", "--format", ","], "nothing is not among"),
-        (["classify", "--slice", "L2,rho", "--timeout", "-1"], "not a positive number of seconds"),
-        (["classify", "--slice", "L2,rho", "--jobs", "0"], "--jobs"),
-        (["classify", "--slice", "L2,rho", "--engine", "magic"], "--engine"),
-        (["clasify"], "clasify"),
-    ],
-    ids=str,
-)
-def test_bad_input_has_status_2_and_no_traceback(
-    engine: dict[str, Any],
-    workplace: Path,
-    capfd: pytest.CaptureFixture[str],
-    arguments: list[str],
-    part: str,
-) -> None:
-    assert run(arguments) == 2
-    captured = capfd.readouterr()
-    assert part in captured.err
-    assert "Traceback" not in captured.err
-    assert captured.out == ""
-    assert names(workplace) == []
-    assert "slice" not in engine
-
-
 def test_the_folder_is_checked_before_the_computation(
     engine: dict[str, Any], tmp_path: Path, capfd: pytest.CaptureFixture[str]
 ) -> None:

@@ -79,57 +79,6 @@ def test_special_points_are_answers(
     assert [path.name for path in tmp_path.iterdir()] == ["poses-landscape.png"]
 
 
-@pytest.mark.parametrize(
-    ("arguments", "message"),
-    [
-        ([], "error: give a point, as in --at L1=1,L2=3/2"),
-        (["--at", "rho"], "error: --at: 'rho' is not NAME=VALUE"),
-        (["--at", "rho=1,rho=2"], "error: --at: rho is given twice: leave one out"),
-        (["--at", "roh=1"], "did you mean 'rho'"),
-        (["--at", "rho=0.1.2"], "error: --at rho: "),
-        (["--at", "rho=1/0"], "error: --at rho: division by zero"),
-        (["--at", "rho=nan"], "'nan' is not a number"),
-        (["--at", "rho=x"], "unknown name 'x'"),
-        (["--at", "L1=0"], "L1 is 0, but a length must be positive"),
-        (["--at", "rho=1", "--set", "rho=2"], "error: --at rho: is given with --set too"),
-        (["--at", "rho=1", "--set", "k"], "is not NAME=VALUE"),
-        (["--at", "l0=-1/5"], "l0 is -1/5, but a free length must be not negative"),
-        (["--at", "rho=1", "--digits", "0"], "--digits: "),
-        (["--at", "rho=1", "--digits", "1001"], "--digits: "),
-        (["--at", "rho=1", "--format", "gif"], "gif is not among table, json, png, svg, pdf"),
-        (
-            ["--at", "rho=1", "--format", "json", "--name", "../x"],
-            "error: --name: '../x' cannot name a file",
-        ),
-        (
-            ["--at", "rho=1", "--format", "json", "--name", "COM1"],
-            "error: --name: 'COM1' cannot name a file: Windows",
-        ),
-        (["missing.yaml", "--at", "rho=1"], "missing.yaml"),
-        ([FIG4, "--at", "rho=1"], "error: --at: L2 is an axis of "),
-        ([FIG3, "--at", "rho=1,F=L2"], "error: --at F: the value of this axis is a number"),
-        ([FIG3, "--at", "rho=1,G=1"], "error: --at G: unknown parameter 'G'"),
-    ],
-    ids=lambda value: (
-        " ".join(Path(part).name for part in value) if isinstance(value, list) else ""
-    ),
-)
-def test_bad_input_gets_one_message(
-    arguments: list[str],
-    message: str,
-    tmp_path: Path,
-    monkeypatch: pytest.MonkeyPatch,
-    capsys: pytest.CaptureFixture[str],
-) -> None:
-    monkeypatch.chdir(tmp_path)
-    assert run(["solve", *arguments]) == 2
-    captured = capsys.readouterr()
-    assert message in captured.err
-    assert "Traceback" not in captured.err
-    assert captured.out == ""
-    assert list(tmp_path.iterdir()) == []
-
-
 def test_an_unwritable_folder_is_told_before_anything_is_computed(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

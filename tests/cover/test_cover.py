@@ -156,6 +156,25 @@ def test_samples_are_in_their_components_and_rectangles_can_not_grow(cover: Cove
             assert left * across < x - x0 < right * across and bottom * up < y - y0 < top * up
 
 
+@settings(deadline=None, max_examples=examples(50))
+@given(covers())
+def test_samples_are_numbered_and_lattice_points_are_looked_up_as_single_points_are(
+    cover: Cover,
+) -> None:
+    found, half = components(cover), Fraction(1, 2)
+    own = [next(samples(found, number, WINDOW)) for number in range(len(found.areas))]
+    known = {number: len(own) - 1 - number for number in range(len(own))}
+    assert found.numbered(own[::-1], WINDOW) == known
+    for sample in own[:1]:
+        with pytest.raises(ValueError, match="sample 1 is in a rectangle, or in the component"):
+            found.numbered([sample, sample], WINDOW)
+    steps = np.arange(cover.steps)
+    image = found.raster(steps[:2], steps).tolist()
+    for row, u, v in ((image[v], u, v) for v in steps.tolist() for u in steps[:2].tolist()):
+        component = found.locate(u + half, v + half)
+        assert row[u] == (-1 if component is None else component)
+
+
 @settings(deadline=None, max_examples=examples(80))
 @given(covers())
 def test_a_combined_cover_covers_the_same_with_no_more_rectangles(cover: Cover) -> None:

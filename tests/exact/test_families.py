@@ -6,6 +6,7 @@ import random
 from fractions import Fraction
 
 import pytest
+import yaml
 from flint import fmpq
 
 import ptmcad
@@ -17,23 +18,22 @@ from ptmcad.exact.models.familyparameters import space_parameters
 from ptmcad.options import Options
 from ptmcad.question.config import Family, family_from
 
-FAMILIES = {
-    "equal loads": {
-        "axes": {"rho": [0, 2], "L2": [0, 2]}, "parameters": {"F3": "F", "F4": "F"}, "free": {"F": [-40, 0]},
-    },
-    "two loads, 446 terms": {
-        "axes": {"rho": [0, 2], "F3": [-30, 0]}, "parameters": {"L2": "3/2"}, "free": {"F4": [-30, 0]},
-    },
-    "chain": {
-        "mechanism": "chain", "axes": {"a": [0, 3], "F": [-2, 2]}, "parameters": {"k1": 1, "k2": "K"},
-        "free": {"K": ["1/4", 4]},
-    },
-    "system with a condition": {
-        "system": {"unknowns": {"x": "real"}, "equations": ["x^3 + a*x + b"], "positive": ["x - c"],
-                   },
-        "axes": {"a": [-2, 2], "b": [-2, 2]}, "free": {"c": [-1, 1]},
-    },
-}  # fmt: skip
+FAMILIES = yaml.safe_load("""
+equal loads: {axes: {rho: [0, 2], L2: [0, 2]}, parameters: {F3: F, F4: F}, free: {F: [-40, 0]}}
+two loads, 446 terms:
+  axes: {rho: [0, 2], F3: [-30, 0]}
+  parameters: {L2: 3/2}
+  free: {F4: [-30, 0]}
+chain:
+  mechanism: chain
+  axes: {a: [0, 3], F: [-2, 2]}
+  parameters: {k1: 1, k2: K}
+  free: {K: [1/4, 4]}
+system with a condition:
+  system: {unknowns: {x: real}, equations: [x^3 + a*x + b], positive: [x - c]}
+  axes: {a: [-2, 2], b: [-2, 2]}
+  free: {c: [-1, 1]}
+""")
 WITHOUT_AREAS = Options(areas=False)
 
 
@@ -100,12 +100,14 @@ def test_the_surface_has_as_many_terms_as_is_known() -> None:
 
 def test_a_basis_that_does_not_specialise_is_not_used() -> None:
     """At c = 0 the first equation is lost, of the others three solutions remain in place of one."""
-    record = {
-        "system": {"unknowns": {"x": "real", "y": "real"},
-                   "equations": ["c*(x - a) + (x - 1)*(x - 2)*(x - 3)*0 + c*0*y", "y^2 - b + x*c"],
-                   },
-        "axes": {"a": [-2, 2], "b": [-2, 2]}, "free": {"c": [-1, 1]}, "members": ["1/2", 1],
-    }  # fmt: skip
+    record = yaml.safe_load("""
+        system:
+          unknowns: {x: real, y: real}
+          equations: [c*(x - a) + (x - 1)*(x - 2)*(x - 3)*0 + c*0*y, y^2 - b + x*c]
+        axes: {a: [-2, 2], b: [-2, 2]}
+        free: {c: [-1, 1]}
+        members: [1/2, 1]
+    """)
     family = family_from(record)
     common = in_common(family, WITHOUT_AREAS)
     for value in (Fraction(0), Fraction(1, 2)):
@@ -152,11 +154,10 @@ def test_parameters_in_three_variables_are_the_members_own() -> None:
 
 
 def test_springs_with_free_lengths_have_no_variety_in_common() -> None:
-    family = family_from(
-        {
-            "axes": {"rho": [1, 2], "L2": [1, 2]},
-            "parameters": {"l0": "l"},
-            "free": {"l": ["1/10", 1]},
-        }
-    )
+    stretched = yaml.safe_load("""
+        axes: {rho: [1, 2], L2: [1, 2]}
+        parameters: {l0: l}
+        free: {l: [1/10, 1]}
+    """)
+    family = family_from(stretched)
     assert in_common(family).variety is None

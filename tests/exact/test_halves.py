@@ -25,7 +25,7 @@ from ptmcad.text.flint_numbers import from_fraction, to_fraction
 CONFIGS = Path(__file__).parents[2] / "configs"
 
 NUMBERS = {"a": {"kind": "number"}, "b": {"kind": "number"}}
-SYSTEMS = {
+SYSTEMS: dict[str, tuple[list[str], dict[str, list[object]]]] = {
     "in the first axis": (["x^3 - x + a", "y^2 - b - a*x"], {"a": [-1, 1], "b": [0, 2]}),
     "in the second axis, beside zero": (["x^3 - a*x + b - 3"], {"a": ["1/2", 2], "b": [2, 4]}),
     "in a point": (["x^3 - a*b*x + b"], {"a": [-2, 2], "b": [-1, 1]}),
@@ -44,6 +44,10 @@ SYSTEMS = {
     ),
 }
 """Equations in x, y and z that an involution keeps, over a window."""
+POTENTIALS: dict[str, tuple[str, dict[str, list[object]]]] = {
+    "negated: the swallowtail": ("x^5/5 - x^3/4 + a*x^2/2 + b*x", {"a": [-1, 1], "b": [-1, 1]}),
+}
+"""Of which one becomes its negative, so that the total count alone is kept."""
 
 
 def _system(name: str) -> Slice:
@@ -58,12 +62,34 @@ def _system(name: str) -> Slice:
 
 
 def _record(name: str) -> Slice:
+    if name in POTENTIALS:
+        return _of_potential(name, "total")
     return _system(name) if name in SYSTEMS else load(CONFIGS / f"{name}.yaml")
+
+
+def _of_potential(name: str, count: str) -> Slice:
+    potential, axes = POTENTIALS[name]
+    system = {"unknowns": {"x": "real"}, "potential": potential, "parameters": NUMBERS}
+    return slice_from_mapping({"system": system, "axes": axes, "count": count})
+
+
+@pytest.mark.parametrize("name", POTENTIALS)
+def test_a_potential_that_becomes_its_negative_serves_total_counts_alone(name: str) -> None:
+    assert problem_of(_of_potential(name, "total")).reflections
+    assert not problem_of(_of_potential(name, "stable")).reflections
+    assert not problem_of(_of_potential(name, "index")).reflections
 
 
 @pytest.mark.parametrize(
     "name",
-    [*SYSTEMS, "rods", "mechanisms/slider-crank", "systems/kuramoto", "systems/orthogonal-3r"],
+    [
+        *SYSTEMS,
+        *POTENTIALS,
+        "rods",
+        "mechanisms/slider-crank",
+        "systems/kuramoto",
+        "systems/orthogonal-3r",
+    ],
 )
 @pytest.mark.slow_cases("systems/kuramoto", "systems/orthogonal-3r", "mechanisms/slider-crank")
 def test_a_half_has_the_areas_of_the_whole_window(
@@ -114,7 +140,7 @@ def _without_areas(found: RegionMap) -> tuple[object, ...]:
     )
 
 
-@pytest.mark.parametrize("name", [*SYSTEMS, "rods", "forces", "systems/kuramoto"])
+@pytest.mark.parametrize("name", [*SYSTEMS, *POTENTIALS, "rods", "forces", "systems/kuramoto"])
 def test_counts_at_mirrored_points_are_the_same(name: str) -> None:
     problem = problem_of(_record(name))
     (low, high), (bottom, top) = problem.window
@@ -131,8 +157,9 @@ def test_counts_at_mirrored_points_are_the_same(name: str) -> None:
     agree()
 
 
-def _counts(problem: SliceProblem, at: Sample) -> Counts | type[Exception]:
+def _counts(problem: SliceProblem, at: Sample) -> Counts | int | type[Exception]:
     try:
-        return problem.solved_at(at).counts
+        counts = problem.solved_at(at).counts
+        return counts.total if problem.slice.count.value == "total" else counts
     except (DegenerateSliceError, GeometryError) as error:
         return type(error)

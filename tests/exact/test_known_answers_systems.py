@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+import yaml
 from flint import fmpq
 
 import ptmcad
@@ -260,75 +261,61 @@ def chain(bars: int) -> dict[str, Any]:
     }
 
 
-FOUR_BAR: dict[str, Any] = {
-    "name": "four-bar",
-    "system": {
-        "unknowns": {"p": "angle", "q": "angle", "m": "real"},
-        "equations": [
-            "k2*b*L1*sin(p) - F*L1*cos(p) + m*L1*(b*sin(p) + L2*sin(p - q))",
-            "-k1*b*L2*sin(q) - G*L2*cos(q) - m*L2*(b*sin(q) + L1*sin(p - q))",
-            "(b + L2*cos(q) - L1*cos(p))^2 + (L2*sin(q) - L1*sin(p))^2 - L3^2",
-        ],
-    },
-    "parameters": {"b": 2, "L1": 1, "L2": "3/2", "L3": "7/4", "k1": 1, "k2": "4/3"},
-    "axes": {"F": [-2, 2], "G": [-2, 2]},
-}
-X_JOINT: dict[str, Any] = {
-    "name": "x-joint",
-    "system": {  # tan(th2/2) = kappa tan(t/2), so that cos th2 = N/D and sin th2 = 2 kappa sin(t)/D
-        "unknowns": {"t": "angle"},
-        "equations": [
-            "(k2*b*sin(t) - F*cos(t))*(1 + cos(t) + K^2*(1 - cos(t)))^2"
-            " - 2*K*(2*K*k1*b*sin(t) + G*(1 + cos(t) - K^2*(1 - cos(t))))"
-        ],
-    },
-    "parameters": {
-        "b": "1/2",
-        "K": 3,
-        "k1": 1,
-        "k2": "4/3",
-    },  # bars of length 1: K = (1 + b)/(1 - b)
-    "axes": {"F": [-2, 2], "G": [-2, 2]},
-}
-OSCILLATORS: dict[str, Any] = {
-    "name": "four-oscillators",
-    "system": {
-        "unknowns": {"a": "angle", "b": "angle", "c": "angle"},
-        "equations": [
-            "sin(a - b) + sin(a - c) + sin(a) - w1", "sin(b - a) + sin(b - c) + sin(b) - w2",
-            "sin(c - a) + sin(c - b) + sin(c) - 1/5",
-        ],
-    },
-    "axes": {"w1": [-2, 2], "w2": [-2, 2]},
-}  # fmt: skip
-ZEEMAN_LENGTHS: dict[str, Any] = {
-    "name": "zeeman",
-    "system": {  # u and v are the inverse lengths of the elastics
-        "unknowns": {"t": "angle", "u": "real", "v": "real"},
-        "equations": [
-            "(x*sin(t) - y*cos(t))*(1 - u/4) + sin(t)*(1 - v/4)",
-            "u^2*((x - cos(t)/2)^2 + (y - sin(t)/2)^2) - 1",
-            "v^2*((1 - cos(t)/2)^2 + sin(t)^2/4) - 1",
-        ],
-    },
-    "axes": {"x": [-2, -1], "y": ["-1/2", "1/2"]},
-}
-PLATFORM: dict[str, Any] = {
-    "name": "platform",
-    "system": {
-        "unknowns": {"t": "angle", "p": "angle", "u": "real"},
-        "equations": [
-            "(1 - u/3)*(L*cos(t) + cos(p) - 2)*(-L*sin(t)) + (1 - u/3)*(L*sin(t) + sin(p))*L*cos(t)"
-            " + (L*cos(t) + cos(p)/2 - sin(p) - 1)*(-L*sin(t)) + (L*sin(t) + sin(p)/2 + cos(p) - 2)*L*cos(t)"
-            " + W*L*cos(t)",
-            "(1 - u/3)*(L*cos(t) + cos(p) - 2)*(-sin(p)) + (1 - u/3)*(L*sin(t) + sin(p))*cos(p)"
-            " + (L*cos(t) + cos(p)/2 - sin(p) - 1)*(-sin(p)/2 - cos(p))"
-            " + (L*sin(t) + sin(p)/2 + cos(p) - 2)*(cos(p)/2 - sin(p)) + W*cos(p)",
-            "u^2*((L*cos(t) + cos(p) - 2)^2 + (L*sin(t) + sin(p))^2) - 1",
-        ],
-    },
-    "axes": {"L": [1, 2], "W": [1, 2]},
-}
+FOUR_BAR: dict[str, Any] = yaml.safe_load("""
+name: four-bar
+system:
+  unknowns: {p: angle, q: angle, m: real}
+  equations:
+    - k2*b*L1*sin(p) - F*L1*cos(p) + m*L1*(b*sin(p) + L2*sin(p - q))
+    - -k1*b*L2*sin(q) - G*L2*cos(q) - m*L2*(b*sin(q) + L1*sin(p - q))
+    - (b + L2*cos(q) - L1*cos(p))^2 + (L2*sin(q) - L1*sin(p))^2 - L3^2
+parameters: {b: 2, L1: 1, L2: 3/2, L3: 7/4, k1: 1, k2: 4/3}
+axes: {F: [-2, 2], G: [-2, 2]}
+""")
+X_JOINT: dict[str, Any] = yaml.safe_load("""
+name: x-joint
+system:  # tan(th2/2) = kappa tan(t/2), so that cos th2 = N/D and sin th2 = 2 kappa sin(t)/D
+  unknowns: {t: angle}
+  equations:
+    - (k2*b*sin(t) - F*cos(t))*(1 + cos(t) + K^2*(1 - cos(t)))^2
+      - 2*K*(2*K*k1*b*sin(t) + G*(1 + cos(t) - K^2*(1 - cos(t))))
+parameters: {b: 1/2, K: 3, k1: 1, k2: 4/3}  # bars of length 1: K = (1 + b)/(1 - b)
+axes: {F: [-2, 2], G: [-2, 2]}
+""")
+OSCILLATORS: dict[str, Any] = yaml.safe_load("""
+name: four-oscillators
+system:
+  unknowns: {a: angle, b: angle, c: angle}
+  equations:
+    - sin(a - b) + sin(a - c) + sin(a) - w1
+    - sin(b - a) + sin(b - c) + sin(b) - w2
+    - sin(c - a) + sin(c - b) + sin(c) - 1/5
+axes: {w1: [-2, 2], w2: [-2, 2]}
+""")
+ZEEMAN_LENGTHS: dict[str, Any] = yaml.safe_load("""
+name: zeeman
+system:  # u and v are the inverse lengths of the elastics
+  unknowns: {t: angle, u: real, v: real}
+  equations:
+    - (x*sin(t) - y*cos(t))*(1 - u/4) + sin(t)*(1 - v/4)
+    - u^2*((x - cos(t)/2)^2 + (y - sin(t)/2)^2) - 1
+    - v^2*((1 - cos(t)/2)^2 + sin(t)^2/4) - 1
+axes: {x: [-2, -1], y: [-1/2, 1/2]}
+""")
+PLATFORM: dict[str, Any] = yaml.safe_load("""
+name: platform
+system:
+  unknowns: {t: angle, p: angle, u: real}
+  equations:
+    - (1 - u/3)*(L*cos(t) + cos(p) - 2)*(-L*sin(t)) + (1 - u/3)*(L*sin(t) + sin(p))*L*cos(t)
+      + (L*cos(t) + cos(p)/2 - sin(p) - 1)*(-L*sin(t)) + (L*sin(t) + sin(p)/2 + cos(p) - 2)*L*cos(t)
+      + W*L*cos(t)
+    - (1 - u/3)*(L*cos(t) + cos(p) - 2)*(-sin(p)) + (1 - u/3)*(L*sin(t) + sin(p))*cos(p)
+      + (L*cos(t) + cos(p)/2 - sin(p) - 1)*(-sin(p)/2 - cos(p))
+      + (L*sin(t) + sin(p)/2 + cos(p) - 2)*(cos(p)/2 - sin(p)) + W*cos(p)
+    - u^2*((L*cos(t) + cos(p) - 2)^2 + (L*sin(t) + sin(p))^2) - 1
+axes: {L: [1, 2], W: [1, 2]}
+""")
 
 
 @pytest.mark.parametrize(
@@ -427,26 +414,18 @@ def test_cusps_of_orthogonal_manipulators_as_baili_wenger_and_chablat_have_them(
 
 # ----------------------------------------------------------------------------------------------------- Zeeman's machine
 
-ZEEMAN: dict[str, Any] = {
-    "name": "zeeman",
-    "mechanism": {
-        "name": "zeeman",
-        "parameters": {
-            "x": {"kind": "number"},
-            "y": {"kind": "number"},
-            "l0": {"kind": "free length", "default": 0},
-        },
-        "unknowns": {"t": "angle"},
-        "points": {"O": [0, 0], "P": ["cos(t)/2", "sin(t)/2"], "A": [1, 0], "C": ["x", "y"]},
-        "springs": [
-            {"between": ["A", "P"], "k": 1, "free": "l0"},
-            {"between": ["C", "P"], "k": 1, "free": "l0"},
-        ],
-    },
-    "parameters": {"l0": "1/4"},
-    "axes": {"x": [-2, "-3/4"], "y": ["-1/2", "1/2"]},
-    "count": "index",
-}
+ZEEMAN: dict[str, Any] = yaml.safe_load("""
+name: zeeman
+mechanism:
+  name: zeeman
+  parameters: {x: {kind: number}, y: {kind: number}, l0: {kind: free length, default: 0}}
+  unknowns: {t: angle}
+  points: {O: [0, 0], P: [cos(t)/2, sin(t)/2], A: [1, 0], C: [x, y]}
+  springs: [{between: [A, P], k: 1, free: l0}, {between: [C, P], k: 1, free: l0}]
+parameters: {l0: 1/4}
+axes: {x: [-2, -3/4], y: [-1/2, 1/2]}
+count: index
+""")
 
 
 def test_zeemans_machine_has_two_stable_positions_within_four_cusps() -> None:

@@ -10,6 +10,7 @@ from types import MappingProxyType
 from typing import Any
 
 import pytest
+import yaml
 from flint import fmpq
 
 import ptmcad
@@ -51,24 +52,18 @@ def arm(moment: object, others: Mapping[str, str] = MappingProxyType({}), **axes
     )
 
 
-TWO_ANGLES = {
-    "name": "pair",
-    "mechanism": {
-        "parameters": {"M": {}, "K": {"kind": "stiffness", "default": 3}},
-        "unknowns": {"p": "angle", "q": "angle"},
-        "points": {"O": [0, 0], "P": ["cos(p)", "sin(p)"], "Q": ["cos(q)", "sin(q)"]},
-        "bars": [["O", "P"], ["O", "Q"]],
-        "torsion": [
-            {"angle": "p", "k": 1},
-            {"angle": "p + q", "k": "1/4"},
-            {"angle": "p - q", "k": "1/4"},
-            {"angle": "2*q", "k": "K"},
-        ],
-        "loads": {"Q": [0, "1/10"]},
-        "moments": {"p": "M"},
-    },
-    "axes": {"M": ["-1/4", 1], "K": [1, 4]},
-}
+TWO_ANGLES = yaml.safe_load("""
+name: pair
+mechanism:
+  parameters: {M: {}, K: {kind: stiffness, default: 3}}
+  unknowns: {p: angle, q: angle}
+  points: {O: [0, 0], P: [cos(p), sin(p)], Q: [cos(q), sin(q)]}
+  bars: [[O, P], [O, Q]]
+  torsion: [{angle: p, k: 1}, {angle: p + q, k: 1/4}, {angle: p - q, k: 1/4}, {angle: 2*q, k: K}]
+  loads: {Q: [0, 1/10]}
+  moments: {p: M}
+axes: {M: [-1/4, 1], K: [1, 4]}
+""")
 
 
 def test_a_pose_snaps_where_no_moment_works_and_is_not_said_to_where_one_does() -> None:

@@ -13,6 +13,7 @@ from typing import Any
 
 import jsonschema
 import pytest
+import yaml
 from flint import arb, ctx
 from support.maps import CONFIGS
 
@@ -334,12 +335,12 @@ def test_losing_stability_is_no_merger() -> None:
     """There are eight solutions on both sides of b = 0.71660, and a fold of others comes soon, at
     0.71665.
     """
-    asked = {
-        "unknowns": {"x": "real", "t": "angle"},
-        "equations": ["x^3 - a*x + b*cos(t)", "sin(t)*x - 1/5 + cos(t)^2/3 - a*sin(t)^2/4"],
-        "positive": ["3 - x^2", "x*sin(t) + 1/2"],
-        "stable": ["3*x^2 - a", "x*cos(t) + 1"],
-    }
+    asked = yaml.safe_load("""
+        unknowns: {x: real, t: angle}
+        equations: [x^3 - a*x + b*cos(t), sin(t)*x - 1/5 + cos(t)^2/3 - a*sin(t)^2/4]
+        positive: [3 - x^2, x*sin(t) + 1/2]
+        stable: [3*x^2 - a, x*cos(t) + 1]
+    """)
     found = pose_paths(system(**asked), "b", {"a": "3/2"}, Fraction(1, 2)).paths
     assert [(p.low.fate, p.high.fate) for p in found] == [(Fate.WINDOW, Fate.UNSTABLE)] * 2
     counts = ptmcad.intervals(system(**asked), "b", {"a": "3/2"})

@@ -75,10 +75,8 @@ def test_only_what_is_proved_to_be_joined_shares_a_count(monkeypatch: pytest.Mon
 def test_a_coarser_outline_has_fewer_vertices_and_all_of_them_on_the_curves() -> None:
     result = shipped("fig4")
     fine, coarse = outline(result), outline(result, None, 1e-3)
-    assert sum(s.heights.size for s in coarse.stacks) < 0.7 * sum(
-        s.heights.size for s in fine.stacks
-    )
+    assert sum(s.lines.size for s in coarse.stacks) < 0.7 * sum(s.lines.size for s in fine.stacks)
     for many, few in zip(fine.stacks, coarse.stacks, strict=True):
-        places = dict(zip(many.along.tolist(), many.heights.T.tolist(), strict=True))
-        for at, heights in zip(few.along.tolist(), few.heights.T.tolist(), strict=True):
-            assert places[at] == pytest.approx(heights, abs=2**-13)
+        places = {column[0, result.base]: column for column in many.lines.swapaxes(0, 1)}
+        for column in few.lines.swapaxes(0, 1):
+            assert places[column[0, result.base]] == pytest.approx(column, abs=2**-13)

@@ -4,6 +4,7 @@ from collections.abc import Callable
 from typing import Any
 
 import pytest
+import yaml
 
 from ptmcad.answer.regionmap import RegionMap, Status
 from ptmcad.ask.stepwise import slice_from
@@ -13,12 +14,12 @@ from ptmcad.exact.exactmap import exact_map
 from ptmcad.options import Options
 
 CUSP = slice_from(
-    {
-        "name": "cusp",
-        "system": {"unknowns": {"z": "real"}, "equations": ["z^3 - a*z + b"]},
-        "axes": {"a": [-1, 2], "b": [-1, 1]},
-        "count": "total",
-    }
+    yaml.safe_load("""
+name: cusp
+system: {unknowns: {z: real}, equations: [z^3 - a*z + b]}
+axes: {a: [-1, 2], b: [-1, 1]}
+count: total
+""")
 )
 FUNCTIONS = {
     "variety": "variety_of",

@@ -11,6 +11,7 @@ from typing import Any
 
 import jsonschema
 import pytest
+import yaml
 from flint import arb, ctx
 
 from ptmcad import Poses, solve
@@ -25,28 +26,28 @@ from ptmcad.text.balls import ball_of
 SCHEMA = json.loads(
     (Path(__file__).resolve().parents[2] / "docs" / "poses.schema.json").read_text(encoding="utf-8")
 )
-PENDULUM: dict[str, Any] = {
-    "parameters": {"W": {"kind": "force"}, "c": {"kind": "stiffness", "default": 2}},
-    "unknowns": {"th": "angle"},
-    "points": {"O": [0, 0], "P": ["cos(th)", "sin(th)"]},
-    "bars": [["O", "P"]],
-    "torsion": [{"angle": "th", "k": "c"}],
-    "loads": {"P": {"weight": "W"}},
-}
+PENDULUM: dict[str, Any] = yaml.safe_load("""
+parameters: {W: {kind: force}, c: {kind: stiffness, default: 2}}
+unknowns: {th: angle}
+points: {O: [0, 0], P: [cos(th), sin(th)]}
+bars: [[O, P]]
+torsion: [{angle: th, k: c}]
+loads: {P: {weight: W}}
+""")
 """c sin(th) + W cos(th) = 0: the weight W turns the bar down, the spring back up to th = 0."""
-CHAIN: dict[str, Any] = {
-    "parameters": {"l0": {"kind": "free length"}, "W": {"kind": "force"}},
-    "unknowns": {"th": "angle", "phi": "angle"},
-    "points": {
-        "O": [0, 0], "A": ["8/5", "4/5"], "P": ["cos(th)", "sin(th)"], "Q": ["cos(th) + cos(phi)", "sin(th) + sin(phi)"]
-    },
-    "bars": [["O", "P"], ["P", "Q"]],
-    "springs": [{"between": ["A", "Q"], "k": 3, "free": "l0"}],
-    "torsion": [
-        {"angle": "th", "k": 2, "rest": {"cos": "3/5", "sin": "4/5"}}, {"angle": "phi - 2*th - pi/2", "k": "1/3"},
-    ],
-    "loads": {"Q": ["W", "-W"]},
-}  # fmt: skip
+CHAIN: dict[str, Any] = yaml.safe_load("""
+parameters: {l0: {kind: free length}, W: {kind: force}}
+unknowns: {th: angle, phi: angle}
+points:
+  O: [0, 0]
+  A: [8/5, 4/5]
+  P: [cos(th), sin(th)]
+  Q: [cos(th) + cos(phi), sin(th) + sin(phi)]
+bars: [[O, P], [P, Q]]
+springs: [{between: [A, Q], k: 3, free: l0}]
+torsion: [{angle: th, k: 2, rest: {cos: 3/5, sin: 4/5}}, {angle: phi - 2*th - pi/2, k: 1/3}]
+loads: {Q: [W, -W]}
+""")
 
 
 def with_torsion(record: dict[str, Any], *springs: dict[str, Any]) -> Mechanism:

@@ -9,6 +9,7 @@ from fractions import Fraction
 from typing import Any
 
 import pytest
+import yaml
 from support.shipped_records import CONFIGS
 
 from ptmcad.exact.models.modelsystem import system_from
@@ -19,25 +20,16 @@ from ptmcad.model.closed import without_loops
 from ptmcad.model.compile import compiled, compiled_with
 from ptmcad.question.config import load
 
-LOOP: dict[str, Any] = {
-    "name": "loop",
-    "parameters": {
-        "a": {"default": 1},
-        "k": {"kind": "stiffness", "default": 1},
-        "F": {"kind": "force", "default": 1},
-    },
-    "unknowns": {"t": "angle", "s": "angle"},
-    "points": {
-        "A": [0, 0],
-        "B": [2, 0],
-        "P": ["a*cos(t)", "a*sin(t)"],
-        "Q": ["2 + a*cos(s)", "a*sin(s)"],
-    },
-    "bars": [["A", "P"], ["B", "Q"]],
-    "closing": [{"between": ["P", "Q"], "length": "3/2"}],
-    "springs": [{"between": ["A", "Q"], "k": "k"}],
-    "loads": {"P": [0, "F"]},
-}
+LOOP: dict[str, Any] = yaml.safe_load("""
+name: loop
+parameters: {a: {default: 1}, k: {kind: stiffness, default: 1}, F: {kind: force, default: 1}}
+unknowns: {t: angle, s: angle}
+points: {A: [0, 0], B: [2, 0], P: [a*cos(t), a*sin(t)], Q: [2 + a*cos(s), a*sin(s)]}
+bars: [[A, P], [B, Q]]
+closing: [{between: [P, Q], length: 3/2}]
+springs: [{between: [A, Q], k: k}]
+loads: {P: [0, F]}
+""")
 
 
 def closed(record: dict[str, Any]) -> Model:

@@ -10,6 +10,7 @@ from fractions import Fraction
 from types import MappingProxyType
 
 import pytest
+import yaml
 
 import ptmcad
 from ptmcad.formulas.evaluation import nodes_of, substituted, values
@@ -17,14 +18,14 @@ from ptmcad.formulas.graph import Graph
 from ptmcad.model import ClosedMechanism, Mechanism, System
 from ptmcad.model.compile import compiled, compiled_with
 
-PENDULUM = ptmcad.Mechanism({
-    "parameters": {"l0": {"kind": "free length"}, "W": {"kind": "force"}, "c": {"kind": "stiffness", "default": 2}},
-    "unknowns": {"th": "angle"},
-    "points": {"O": [0, 0], "A": [0, 3], "P": ["sin(th)", "cos(th)"]},
-    "springs": [{"between": ["A", "P"], "k": 1, "free": "l0"}],
-    "torsion": [{"angle": "th", "k": "c"}],
-    "loads": {"P": {"weight": "W"}},
-})  # fmt: skip
+PENDULUM = ptmcad.Mechanism(yaml.safe_load("""
+parameters: {l0: {kind: free length}, W: {kind: force}, c: {kind: stiffness, default: 2}}
+unknowns: {th: angle}
+points: {O: [0, 0], A: [0, 3], P: [sin(th), cos(th)]}
+springs: [{between: [A, P], k: 1, free: l0}]
+torsion: [{angle: th, k: c}]
+loads: {P: {weight: W}}
+"""))  # fmt: skip
 
 NAMES = {"name", "title", "source", "parameters", "unknowns"}
 DRAWN = {"bars", "bodies", "supports", "symmetries"}

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+import yaml
 
 from ptmcad.model.involutions import Involution, involutions
 from ptmcad.question.config import load, slice_from_mapping
@@ -47,12 +48,12 @@ def test_no_symmetry_where_the_loads_differ() -> None:
 
 
 def _system(**changes: Any) -> Slice:
-    record = {
-        "name": "three_rings",
-        "parameters": {"a": {"kind": "number"}, "b": {"kind": "number"}},
-        "unknowns": {"s": "angle", "t": "angle", "u": "angle"},
-        "potential": "a*cos(s) + b*cos(t) + cos(u) + cos(s - t) + 2*cos(t - u)",
-    }
+    record = yaml.safe_load("""
+        name: three_rings
+        parameters: {a: {kind: number}, b: {kind: number}}
+        unknowns: {s: angle, t: angle, u: angle}
+        potential: a*cos(s) + b*cos(t) + cos(u) + cos(s - t) + 2*cos(t - u)
+    """)
     return slice_from_mapping(
         {"system": {**record, **changes}, "axes": {"a": [1, 3], "b": [-1, 1]}}
     )
@@ -77,11 +78,11 @@ def test_equations_in_another_order_and_with_other_signs() -> None:
     """x and y exchanged, as a and b are about the middle of the window; (x, y) to (-x, -y) changes
     all signs.
     """
-    system = {
-        "unknowns": {"x": "real", "y": "real"},
-        "equations": ["x^3 - a*x + y*(x^2 + y^2)", "y^3 - (4 - b)*y + x*(x^2 + y^2)"],
-        "parameters": {"a": {"kind": "number"}, "b": {"kind": "number"}},
-    }
+    system = yaml.safe_load("""
+        unknowns: {x: real, y: real}
+        equations: [x^3 - a*x + y*(x^2 + y^2), y^3 - (4 - b)*y + x*(x^2 + y^2)]
+        parameters: {a: {kind: number}, b: {kind: number}}
+    """)
     found = _found(slice_from_mapping({"system": system, "axes": {"a": [0, 2], "b": [2, 4]}}))
     point = (Fraction(1, 2), Fraction(5, 2))
     assert {(f.images, f.signs, f.at(point)) for f in found} == {

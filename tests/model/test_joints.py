@@ -8,6 +8,7 @@ from math import cos, hypot, sin
 from typing import Any
 
 import pytest
+import yaml
 
 from ptmcad.cli.mechanisms import description
 from ptmcad.errors import ConfigError
@@ -18,38 +19,27 @@ from ptmcad.show.linedrawing import approximate_text
 from ptmcad.show.render import draw_mechanism
 from ptmcad.show.spiral import spiral, spirals
 
-SEAT: dict[str, Any] = {
-    "parameters": {"L": {"kind": "length"}, "W": {"kind": "force"}},
-    "unknowns": {"th": "angle", "phi": "angle"},
-    "points": {"O": [0, 0], "P": ["L*sin(th)", "L*cos(th)"]},
-    "bodies": {
-        "seat": {
-            "at": "P",
-            "angle": "phi - th + pi/2",
-            "points": {"Q": ["L", 0], "R": ["1/2", "L^2"]},
-        }
-    },
-    "bars": [["O", "P"], ["Q", "R"]],
-    "loads": {"R": {"weight": "W"}},
-}
+SEAT: dict[str, Any] = yaml.safe_load("""
+parameters: {L: {kind: length}, W: {kind: force}}
+unknowns: {th: angle, phi: angle}
+points: {O: [0, 0], P: [L*sin(th), L*cos(th)]}
+bodies: {seat: {at: P, angle: phi - th + pi/2, points: {Q: [L, 0], R: [1/2, L^2]}}}
+bars: [[O, P], [Q, R]]
+loads: {R: {weight: W}}
+""")
 """The leg's angle is measured from the vertical, clockwise; the seat's direction is phi - th."""
-ROCKER: dict[str, Any] = {
-    "unknowns": {"th": "angle"},
-    "points": {
-        "O": [0, 0],
-        "B": [2, 0],
-        "P": ["cos(th)", "sin(th)"],
-        "Q": ["2 + cos(th)", "sin(th)"],
-    },
-    "bars": [["O", "P"], ["B", "Q"], ["P", "Q"]],
-    "loads": {"P": [0, -1]},
-}
-CRANK: dict[str, Any] = {
-    "unknowns": {"th": "angle", "x": "length"},
-    "points": {"S": ["x", 0], "A": [1, 0], "P": ["x + cos(th)", "sin(th)"]},
-    "bars": [["S", "P"]],
-    "springs": [{"between": ["A", "S"], "k": 1}],
-}
+ROCKER: dict[str, Any] = yaml.safe_load("""
+unknowns: {th: angle}
+points: {O: [0, 0], B: [2, 0], P: [cos(th), sin(th)], Q: [2 + cos(th), sin(th)]}
+bars: [[O, P], [B, Q], [P, Q]]
+loads: {P: [0, -1]}
+""")
+CRANK: dict[str, Any] = yaml.safe_load("""
+unknowns: {th: angle, x: length}
+points: {S: [x, 0], A: [1, 0], P: [x + cos(th), sin(th)]}
+bars: [[S, P]]
+springs: [{between: [A, S], k: 1}]
+""")
 
 PAPER: dict[str, Any] = {
     key: value for key, value in RECORD.items() if key not in ("name", "symmetries")

@@ -22,38 +22,42 @@ from ptmcad.exact.models.modelsystem import elements_of
 from ptmcad.exact.stages import problem_of, variety_of
 from ptmcad.model.compile import compiled
 
-FOUR_BAR: dict[str, Any] = {
-    "name": "four_bar",
-    "parameters": {
-        "L1": {"kind": "length", "default": 1}, "L2": {"kind": "length", "default": "6/5"},
-        "L3": {"kind": "length", "default": "3/2"}, "b": {"kind": "base", "default": 2},
-        "k1": {"kind": "stiffness", "default": 1}, "k2": {"kind": "stiffness", "default": 1},
-        "F": {"kind": "force", "default": 0}, "G": {"kind": "force", "default": 0},
-    },
-    "unknowns": {"th1": "angle", "th2": "angle"},
-    "points": {
-        "A0": [0, 0], "B0": ["b", 0], "P": ["L1*cos(th1)", "L1*sin(th1)"],
-        "Q": ["b + L2*cos(th2)", "L2*sin(th2)"],
-    },
-    "bars": [["A0", "P"], ["B0", "Q"]],
-    "closing": [{"between": ["P", "Q"], "length": "L3"}],
-    "springs": [{"between": ["A0", "Q"], "k": "k1"}, {"between": ["B0", "P"], "k": "k2"}],
-    "loads": {"P": [0, "F"], "Q": [0, "G"]},
-}  # fmt: skip
+FOUR_BAR: dict[str, Any] = yaml.safe_load("""
+name: four_bar
+parameters:
+  L1: {kind: length, default: 1}
+  L2: {kind: length, default: 6/5}
+  L3: {kind: length, default: 3/2}
+  b: {kind: base, default: 2}
+  k1: {kind: stiffness, default: 1}
+  k2: {kind: stiffness, default: 1}
+  F: {kind: force, default: 0}
+  G: {kind: force, default: 0}
+unknowns: {th1: angle, th2: angle}
+points: {A0: [0, 0], B0: [b, 0], P: [L1*cos(th1), L1*sin(th1)], Q: [b + L2*cos(th2), L2*sin(th2)]}
+bars: [[A0, P], [B0, Q]]
+closing: [{between: [P, Q], length: L3}]
+springs: [{between: [A0, Q], k: k1}, {between: [B0, P], k: k2}]
+loads: {P: [0, F], Q: [0, G]}
+""")
 SIGNS = tuple(product((1, -1), repeat=3))
 LOADS = {"axes": {"F": [-4, 4], "G": [-4, 4]}}
-SLIDER_CRANK: dict[str, Any] = {
-    "name": "slider_crank",
-    "parameters": {"r": {"kind": "length", "default": 1}, "l": {"kind": "length", "default": 2},
-                   "k": {"kind": "stiffness", "default": 1}, "W": {"kind": "force"}, "M": {}},
-    "unknowns": {"th": "angle", "x": "length"},
-    "points": {"O": [0, 0], "P": ["r*cos(th)", "r*sin(th)"], "S": ["x", 0], "A": [1, 1]},
-    "bars": [["O", "P"]],
-    "closing": [{"between": ["P", "S"], "length": "l"}],
-    "springs": [{"between": ["A", "S"], "k": "k"}],
-    "loads": {"P": [0, "-W"]},
-    "moments": {"th": "M"},
-}  # fmt: skip
+SLIDER_CRANK: dict[str, Any] = yaml.safe_load("""
+name: slider_crank
+parameters:
+  r: {kind: length, default: 1}
+  l: {kind: length, default: 2}
+  k: {kind: stiffness, default: 1}
+  W: {kind: force}
+  M: {}
+unknowns: {th: angle, x: length}
+points: {O: [0, 0], P: [r*cos(th), r*sin(th)], S: [x, 0], A: [1, 1]}
+bars: [[O, P]]
+closing: [{between: [P, S], length: l}]
+springs: [{between: [A, S], k: k}]
+loads: {P: [0, -W]}
+moments: {th: M}
+""")
 
 
 CONFIGS = Path(__file__).resolve().parents[2] / "configs" / "mechanisms"

@@ -10,6 +10,7 @@ from typing import Any
 
 import pytest
 import yaml
+from support.cases import cases
 
 import ptmcad
 from ptmcad.errors import ConfigError
@@ -61,34 +62,7 @@ def test_a_map_is_stored_with_its_joint_and_verified() -> None:
 
 @pytest.mark.parametrize(
     ("change", "key", "said"),
-    [
-        ({"x-joint": []}, "x-joint", "expected a mapping"),
-        ({"x-joint": {"X": {"base": ["A", "B"], "bars": "L"}}}, "x-joint.X.top", "is missing"),
-        ({"base": ["A", "Z"]}, "X.base", "no point 'Z'"),
-        ({"base": ["B", "A"]}, "X.base", "a length is positive"),
-        ({"bars": 1}, "X.bars", "longer or shorter than its base"),
-        ({"bars": 0}, "X.bars", "a length is positive, but this is 0"),
-        ({"bars": -2}, "X.bars", "a length is positive, but this is -2"),
-        ({"angles": ["th", "th"]}, "X.angles.2", "is given twice"),
-        ({"angles": ["F", "psi"]}, "X.angles.1", "no unknown angle"),
-        ({"angles": "th"}, "X.angles", "two names"),
-        ({"top": ["C", "A"]}, "X.top.2", "is given twice"),
-        ({"top": ["C", "C"]}, "X.top.2", "is given twice"),
-        ({"mechanism": {"points": {"A": [0, 0], "B": [1, 1]}}}, "X.base", "on one level"),
-        ({"mechanism": {"points": {"A": [0, 0], "B": ["cos(th)", 0]}}}, "X.base", "on one level"),
-        (
-            {"mechanism": {"springs": [{"between": ["A", "C"], "k": 1, "free": 1}]}},
-            "springs.1.free",
-            "free lengths",
-        ),
-        (
-            {"mechanism": {"closing": [{"between": ["A", "C"], "length": 1}]}},
-            "closing",
-            "not computed yet",
-        ),
-        ({"mechanism": {"symmetries": [{"th": "-th", "F": "-F"}]}}, "symmetries", "leave them out"),
-    ],
-    ids=str,
+    cases("xjoints", "faults"),
 )
 def test_what_is_wrong_is_told_by_its_key(change: dict[str, Any], key: str, said: str) -> None:
     joint = {
@@ -114,14 +88,7 @@ def test_what_is_wrong_is_told_by_its_key(change: dict[str, Any], key: str, said
 
 @pytest.mark.parametrize(
     ("change", "key"),
-    [
-        ({"bars": None}, "bars"),
-        ({"base": ["A", "Z"]}, "base"),
-        ({"angles": ["th"]}, "angles"),
-        ({"angles": ["th", "psi", "chi"]}, "angles"),
-        ({"top": ["C", "D", "C"]}, "top"),
-    ],
-    ids=str,
+    cases("xjoints", "single faults"),
 )
 def test_one_fault_of_a_joint_is_told_alone(change: dict[str, Any], key: str) -> None:
     """Springs and loads that name the points of its top are not to blame."""

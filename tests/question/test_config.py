@@ -6,8 +6,8 @@ from fractions import Fraction
 from pathlib import Path
 
 import pytest
+from support.cases import cases
 
-from ptmcad.cli import run
 from ptmcad.errors import ConfigError
 from ptmcad.model import ptm
 from ptmcad.question.config import load, point_from_mapping, slice_from_options
@@ -126,214 +126,7 @@ def test_a_heading_names_the_free_length_once() -> None:
     assert "l0" not in slice_from_options(slice="rho,l0").heading
 
 
-BAD = [
-    ("unknown key", AXES + "paramters: {F3: 1}", 2, "paramters", "did you mean 'parameters'?"),
-    ("unknown key, nothing close", AXES + "zzz: 1", 2, "zzz", "the keys are"),
-    (
-        "equations misspelt",
-        "system:\n  unknowns: {x: real}\n  equation: [x - rho]\n" + AXES,
-        3,
-        "system.equation",
-        "did you mean 'equations'?",
-    ),
-    (
-        "unknown parameter",
-        AXES + "parameters:\n  Rho: 1",
-        3,
-        "parameters.Rho",
-        "did you mean 'rho'?",
-    ),
-    (
-        "unknown parameter, nothing close",
-        AXES + "parameters: {F5: 1}",
-        2,
-        "parameters.F5",
-        "the parameters are L1",
-    ),
-    ("duplicate key", AXES + AXES, 2, "axes", "twice; first in line 1"),
-    ("duplicate parameter", AXES + "parameters:\n  F3: 1\n  F3: 2", 4, "parameters.F3", "twice"),
-    ("axis also fixed", AXES + "parameters: {rho: 1}", 2, "parameters.rho", "fixed too"),
-    ("empty range", "axes:\n  rho: [0, 2]\n  L2: [1, 1.0]", 3, "axes.L2", "empty"),
-    (
-        "reversed range",
-        "axes:\n  rho: [2, 0]\n  L2: [0, 1]",
-        2,
-        "axes.rho",
-        "reversed: write [0, 2]",
-    ),
-    ("length below zero", "axes:\n  rho: [-1, 2]\n  L2: [0, 1]", 2, "axes.rho", "below zero"),
-    ("stiffness below zero", "axes:\n  rho: [0, 2]\n  k: [-1, 1]", 3, "axes.k", "below zero"),
-    ("zero length", AXES + "parameters: {L1: 0}", 2, "parameters.L1", "must be positive"),
-    ("negative length", AXES + "parameters: {L1: -1}", 2, "parameters.L1", "L1 is -1"),
-    (
-        "negative base",
-        "axes: {L1: [0, 2], L2: [0, 2]}\nparameters: {rho: -1}",
-        2,
-        "parameters.rho",
-        "not negative",
-    ),
-    ("zero stiffness", AXES + "parameters: {k3: 0}", 2, "parameters.k3", "must be positive"),
-    (
-        "length negative in the window",
-        AXES + "parameters: {L1: rho - 1/2}",
-        2,
-        "parameters.L1",
-        "narrow the window",
-    ),
-    (
-        "division by zero",
-        AXES + "parameters:\n  F3: 1/(2-2)",
-        3,
-        "parameters.F3",
-        "division by zero (character 2",
-    ),
-    (
-        "pole in the window",
-        AXES + "parameters:\n  F3: 1/(rho-1)",
-        3,
-        "parameters.F3",
-        "division by zero inside",
-    ),
-    ("cycle", AXES + "parameters:\n  F3: F4\n  F4: 2*F3", 3, "parameters.F3", "F3 -> F4 -> F3"),
-    ("self-cycle", AXES + "parameters: {F3: F3}", 2, "parameters.F3", "F3 -> F3"),
-    ("unknown name", AXES + "parameters: {F3: 2*roh}", 2, "parameters.F3", "did you mean 'rho'?"),
-    ("null", AXES + "parameters:\n  F3:", 3, "parameters.F3", "no value"),
-    ("boolean", AXES + "parameters: {F3: yes}", 2, "parameters.F3", "yes-or-no"),
-    ("list as value", AXES + "parameters: {F3: [1]}", 2, "parameters.F3", "expected a number"),
-    ("nan", AXES + "parameters: {F3: .nan}", 2, "parameters.F3", "all values are finite"),
-    ("comma", AXES + "parameters:\n  F3: 0,5", 3, "parameters.F3", "decimal point"),
-    ("huge exponent", AXES + "parameters: {F3: rho**1000000000}", 2, "parameters.F3", "at most 64"),
-    (
-        "negative free length",
-        AXES + "parameters: {l0: -0.2}",
-        2,
-        "parameters.l0",
-        "must be not negative",
-    ),
-    (
-        "free length axis below zero",
-        "axes: {rho: [0, 2], l0: [-1, 1]}",
-        1,
-        "axes.l0",
-        "not negative: start it at 0",
-    ),
-    (
-        "free length negative in the window",
-        AXES + "parameters: {l0_2: 1/8 - rho/4}",
-        2,
-        "parameters.l0_2",
-        "must not be",
-    ),
-    (
-        "pole of a free length",
-        AXES + "parameters: {l0: 1/(rho-1)}",
-        2,
-        "parameters.l0",
-        "division by zero inside",
-    ),
-    (
-        "l0 without use",
-        AXES + "parameters: {l0: 1, l0_1: 1, l0_2: 1, l0_3: 1}",
-        2,
-        "parameters.l0",
-        "no effect",
-    ),
-    (
-        "axis l0 without use",
-        "axes: {rho: [0, 1], l0: [0, 1]}\nparameters: {l0_1: 0, l0_2: 1, l0_3: 1}",
-        1,
-        "axes.l0",
-        "l0_1, l0_2 and l0_3 are all given",
-    ),
-    ("one axis", "axes: {rho: [0, 2]}", 1, "axes", "1 axes"),
-    ("three axes", "axes: {rho: [0, 2], L1: [0, 2], L2: [0, 2]}", 1, "axes", "3 axes"),
-    ("no axes", "name: a", 1, "axes", "is missing"),
-    (
-        "axes as a list",
-        "axes: [rho, L2]",
-        1,
-        "axes",
-        "L2: [0, 2]}; no range is given for rho and L2",
-    ),
-    ("axes as a text", "axes: rho", 1, "axes", "no range is given for rho"),
-    (
-        "axes as lists",
-        "axes: [[rho, 0, 2], [L2, 0, 2]]",
-        1,
-        "axes",
-        "expected two axes with their ranges",
-    ),
-    ("free without a range", AXES + "free: [F]", 2, "free", "no range is given for F"),
-    ("unused axis", "axes: {roh: [0, 2], L2: [0, 2]}", 1, "axes.roh", "did you mean 'rho'?"),
-    ("cancelled axis", AXES.replace("rho", "F") + "parameters: {F3: F-F}", 1, "axes.F", "not used"),
-    (
-        "axis k without use",
-        "axes: {k: [0, 1], L2: [0, 2]}\nparameters: {k1: 1, k2: 1, k3: 1}",
-        1,
-        "axes.k",
-        "not used",
-    ),
-    (
-        "k without use",
-        AXES + "parameters: {k: 1, k1: 1, k2: 1, k3: 1}",
-        2,
-        "parameters.k",
-        "no effect",
-    ),
-    ("bad axis name", "axes: {2x: [0, 2], L2: [0, 2]}", 1, "axes.2x", "cannot name an axis"),
-    ("range of three", "axes: {rho: [0, 1, 2], L2: [0, 2]}", 1, "axes.rho", "expected a range"),
-    (
-        "range with a name",
-        "axes: {rho: [0, L2], L2: [0, 2]}",
-        1,
-        "axes.rho.2",
-        "not an expression in L2",
-    ),
-    ("count", AXES + "count: all", 2, "count", "none of stable, total, index, admissible"),
-    ("mechanism", AXES + "mechanism: {rods: 3}", 2, "mechanism.rods", "unknown key"),
-    (
-        "mechanism's name",
-        AXES + "mechanism: ptn",
-        2,
-        "mechanism",
-        "unknown mechanism; did you mean 'ptm'?",
-    ),
-    ("name with a path", AXES + "name: ../x", 2, "name", "cannot name a file"),
-    ("name that hides", AXES + "name: .x", 2, "name", "cannot name a file"),
-    *(
-        (f"device {name}", f'{AXES}name: "{name}"', 2, "name", "cannot name a file: Windows keeps")
-        for name in ("con", "NUL", "Com1", "aux", "LPT1.x", "lpt0", "PRN", "com³", "nul.tar.gz")
-    ),
-    *(
-        (f"end of {name!r}", f'{AXES}name: "{name}"', 2, "name", "cannot name a file")
-        for name in ("a.", "a ", "con ")
-    ),
-    ("reference as text", AXES + "reference: text", 2, "reference", "expected a mapping"),
-    ("parameters as a list", AXES + "parameters: [F3]", 2, "parameters", "expected a mapping"),
-    ("anchor", AXES + "parameters: {F3: &a 1, F4: *a}", 2, "parameters.F3", "anchors"),
-    ("alias alone", AXES + "parameters: {F4: *a}", 2, "parameters.F4", "aliases"),
-    ("tag", AXES + "parameters: {F3: !!python/object:os.system 1}", 2, "parameters.F3", "tag"),
-    ("merge key", AXES + "parameters: {<<: {F3: 1}}", 2, "parameters.<<", "merge"),
-    ("two documents", AXES + "---\n" + AXES, 2, None, "second document"),
-    (
-        "nested deep",
-        AXES + "reference: {a: " + "[" * 500 + "]" * 500 + "}",
-        2,
-        "reference.a" + 19 * ".1",
-        "levels of nesting",
-    ),
-    ("not YAML", AXES + "parameters: {F3: 1", 3, None, "is not YAML"),
-    ("tab", AXES + "parameters:\n\tF3: 1", 3, None, "is not YAML"),
-    ("empty", "", None, None, "is empty"),
-    ("a sentence", "hello world", None, None, "not a mapping"),
-    ("a list", "- 1\n- 2", None, None, "not a mapping"),
-    ("control character", "a: \x07", None, None, "is not YAML"),
-]
-
-
-@pytest.mark.parametrize(
-    ("text", "line", "key", "part"), [case[1:] for case in BAD], ids=[case[0] for case in BAD]
-)
+@pytest.mark.parametrize(("text", "line", "key", "part"), cases("config", "records"))
 def test_bad_records_are_refused_with_their_place(
     tmp_path: Path, text: str, line: int | None, key: str | None, part: str
 ) -> None:
@@ -355,30 +148,6 @@ def test_a_record_whose_name_is_a_device_has_to_give_another(tmp_path: Path, fil
     assert (caught.value.key, caught.value.file) == ("name", str(tmp_path / file))
     (tmp_path / file).write_text(f"name: mine\n{AXES}")
     assert load(tmp_path / file).name == "mine"
-
-
-@pytest.mark.parametrize(
-    ("arguments", "key"),
-    [
-        (["variety", "--slice", "L2,rho", "--out", "nul.mpl"], "--out"),
-        (["variety", "--slice", "L2,rho", "--out", "curves."], "--out"),
-        (["variety", "--slice", "L2,rho", "--out", "curves.mpl "], "--out"),
-        (
-            ["range", "--along", "rho", "--at", "L2=3/2", "--format", "json", "--name", "lpt9"],
-            "--name",
-        ),
-        (
-            ["range", "--along", "rho", "--at", "L2=3/2", "--format", "json", "--name", "../x"],
-            "--name",
-        ),
-        (["range", "--along", "rho", "--at", "L2=3/2", "--format", "json", "--name", ""], "--name"),
-    ],
-)
-def test_options_that_cannot_name_a_file(
-    capfd: pytest.CaptureFixture[str], arguments: list[str], key: str
-) -> None:
-    assert run(arguments) == 2
-    assert capfd.readouterr().err.startswith(f"error: {key}: ")
 
 
 def test_options_alone() -> None:
@@ -406,25 +175,7 @@ def test_options_over_a_record() -> None:
 
 @pytest.mark.parametrize(
     ("options", "key", "part"),
-    [
-        ({}, None, "--slice L1,L2"),
-        ({"slice": "L2"}, "--slice", "is not X,Y"),
-        ({"slice": "L2,L2"}, "--slice", "both L2"),
-        ({"slice": "L2,roh"}, "--slice", "did you mean 'rho'?"),
-        ({"slice": "L2,F"}, "--slice", "--range F=LO:HI"),
-        ({"slice": "L2,rho", "sets": ["rho=1"]}, "--set rho", "is an axis"),
-        ({"slice": "L2,rho", "sets": ["F3"]}, "--set", "is not NAME=VALUE"),
-        ({"slice": "L2,rho", "sets": ["F9=1"]}, "--set F9", "unknown parameter"),
-        ({"slice": "L2,rho", "sets": ["F3=1", "F3=2"]}, "--set F3", "given twice"),
-        ({"slice": "L2,rho", "sets": ["L1=-1"]}, "--set L1", "must be positive"),
-        ({"slice": "L2,rho", "ranges": ["F3=0:1"]}, "--range F3", "is not an axis"),
-        ({"slice": "L2,rho", "ranges": ["rho=0"]}, "--range", "is not NAME=LO:HI"),
-        ({"slice": "L2,rho", "ranges": ["rho=2:1"]}, "--range rho", "reversed"),
-        ({"slice": "L2,rho", "count": "some"}, "--count", "is none of"),
-        ({"config": "fig4", "sets": ["rho=1"]}, "--set rho", "choose other axes"),
-        ({"config": "fig4", "slice": "F3,F4", "sets": ["L2=1"]}, "--slice", "add --set rho=VALUE"),
-    ],
-    ids=str,
+    cases("config", "options"),
 )
 def test_bad_options_name_the_option(
     options: dict[str, object], key: str | None, part: str

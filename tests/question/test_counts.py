@@ -6,6 +6,7 @@ from fractions import Fraction
 from math import hypot
 
 import pytest
+import yaml
 from support.replacing import replace
 
 import ptmcad
@@ -50,11 +51,11 @@ def test_a_margin_has_the_sign_of_the_length_less_the_free_length() -> None:
 
 
 def test_a_count_that_makes_no_sense_is_refused_whoever_asks() -> None:
-    equations = {
-        "name": "cubic",
-        "system": {"unknowns": {"x": "real"}, "equations": ["x^3 - a*x + b"]},
-        "axes": {"a": [-1, 1], "b": [-1, 1]},
-    }
+    equations = yaml.safe_load("""
+        name: cubic
+        system: {unknowns: {x: real}, equations: [x^3 - a*x + b]}
+        axes: {a: [-1, 1], b: [-1, 1]}
+    """)
     slice = slice_from_mapping(equations)
     for count, why in (
         ("index", "no index"),

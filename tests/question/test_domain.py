@@ -12,6 +12,7 @@ from fractions import Fraction
 from typing import Any
 
 import pytest
+import yaml
 from support.replacing import replace
 
 from ptmcad.ask.lines.along import certified_intervals
@@ -159,13 +160,13 @@ def test_undecided_is_read_but_not_certified() -> None:
 @pytest.mark.parametrize("changed", ["parameter", "window", "spring"])
 def test_a_proof_is_not_taken_for_that_of_another_slice(changed: str) -> None:
     """What is carried says of which function in which window it is."""
-    mechanism = {
-        "parameters": {"g": {"default": 1}, "m": {}, "n": {}},
-        "unknowns": {"th": "angle"},
-        "points": {"A": ["-2", "0"], "P": ["sin(th)", "cos(th)"]},
-        "springs": [{"between": ["A", "P"], "k": "g*m"}],
-        "loads": {"P": ["n", "0"]},
-    }
+    mechanism = yaml.safe_load("""
+        parameters: {g: {default: 1}, m: {}, n: {}}
+        unknowns: {th: angle}
+        points: {A: ['-2', '0'], P: [sin(th), cos(th)]}
+        springs: [{between: [A, P], k: g*m}]
+        loads: {P: [n, '0']}
+    """)
     slice = proved(
         slice_from_mapping({"mechanism": mechanism, "axes": {"m": [0, 2], "n": [-3, 1]}})
     )
@@ -239,12 +240,12 @@ def test_what_springs_are_given_is_proved_by_engines(
 
 
 def test_an_expression_in_a_spring_has_a_degree_that_can_be_computed() -> None:
-    mechanism = {
-        "parameters": {"L": {"kind": "length"}, "g": {}},
-        "unknowns": {"th": "angle"},
-        "points": {"A": ["-2", "0"], "P": ["L*sin(th)", "L*cos(th)"]},
-        "springs": [{"between": ["A", "P"], "k": "g^20"}],
-    }
+    mechanism = yaml.safe_load("""
+        parameters: {L: {kind: length}, g: {}}
+        unknowns: {th: angle}
+        points: {A: ['-2', '0'], P: [L*sin(th), L*cos(th)]}
+        springs: [{between: [A, P], k: g^20}]
+    """)
     with pytest.raises(ConfigError, match="has degree 40 in the axes: at most 32 can be computed"):
         slice_from_mapping({
             "mechanism": mechanism, "parameters": {"g": "1 + u*L"}, "axes": {"L": [0, 1], "u": [0, 1]},

@@ -7,8 +7,10 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+import yaml
 from hypothesis import given
 from hypothesis import strategies as st
+from support.cases import cases
 
 from ptmcad.errors import ConfigError
 from ptmcad.question.config import (
@@ -21,10 +23,12 @@ from ptmcad.question.config.typed import Typed
 from ptmcad.text.syntax import parse
 from ptmcad.text.tree import Name, Number, names_of, replaced, to_text
 
-RECORD: dict[str, Any] = {
-    "name": "loads", "axes": {"rho": [0, 2], "L2": [0, 2]}, "parameters": {"F3": "F", "F4": "2*F - 1"},
-    "free": {"F": [-4, 0]},
-}  # fmt: skip
+RECORD: dict[str, Any] = yaml.safe_load("""
+name: loads
+axes: {rho: [0, 2], L2: [0, 2]}
+parameters: {F3: F, F4: 2*F - 1}
+free: {F: [-4, 0]}
+""")
 TEXT = """name: loads
 axes: {rho: [0, 2], L2: [0, 2]}
 parameters: {F3: F, F4: 2*F - 1}
@@ -59,14 +63,14 @@ def test_a_member_is_the_slice_that_one_would_type() -> None:
 
 def test_a_free_length_may_be_free_from_zero_on() -> None:
     family = family_from(
-        {"axes": {"rho": [1, 2], "L2": [1, 2]}, "free": {"l0": [0, 1]}, "members": 2}
+        yaml.safe_load("{axes: {rho: [1, 2], L2: [1, 2]}, free: {l0: [0, 1]}, members: 2}")
     )
     assert [family.member(value).has_free_lengths for value in family.values] == [False, True]
 
 
 def test_a_parameter_of_the_model_may_be_free() -> None:
     family = family_from(
-        {"axes": {"rho": [0, 2], "L2": [0, 2]}, "free": {"F3": [-4, 0]}, "members": [-1]}
+        yaml.safe_load("{axes: {rho: [0, 2], L2: [0, 2]}, free: {F3: [-4, 0]}, members: [-1]}")
     )
     assert family.member(Fraction(-1)).parameters["F3"].constant() == -1
     with pytest.raises(ConfigError, match="1 is outside of the range of F3"):
@@ -75,27 +79,7 @@ def test_a_parameter_of_the_model_may_be_free() -> None:
 
 @pytest.mark.parametrize(
     ("change", "message"),
-    [
-        ({"free": {"F": [0, 0]}}, "the range of F is empty"),
-        ({"free": {"F": [-1, 0], "G": [0, 1]}}, "expected one parameter with its range"),
-        ({"free": {"G": [-1, 0]}}, "unknown name 'F'"),
-        ({"free": {"rho": [0, 1]}}, "rho is an axis too"),
-        ({"free": {"F3": [0, 1]}}, "F3 is free and cannot be fixed too"),
-        ({"parameters": {}}, "the free parameter F is not used"),
-        ({"members": [1]}, "1 is outside of the range of F"),
-        ({"members": [-1, -1]}, "-1 is given twice"),
-        ({"members": []}, "0 values are given"),
-        ({"members": 1}, "write how many members there are"),
-        ({"members": "2.5"}, "write how many members there are"),
-        ({"members": {"F": 1}}, "expected a list of values"),
-        ({"members": [[1]]}, "expected a number"),
-        ({"members": ["F"]}, "the value of a member is a number"),
-        (
-            {"parameters": {"F3": "F", "L1": "F + 2"}},
-            r"L1 is -2, but a length must be positive \(at F = -4\)",
-        ),
-        ({"parameters": {"F3": "1/F"}}, r"division by zero.*\(at F = 0\)"),
-    ],
+    cases("family_records", "faults"),
 )
 def test_what_is_wrong_is_said(change: dict[str, Any], message: str) -> None:
     with pytest.raises(ConfigError, match=message):

@@ -9,6 +9,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import yaml
 from support.certified_map import certified_map
 from support.maps import shipped
 
@@ -57,10 +58,11 @@ def test_a_grid_as_a_frame() -> None:
 
 
 def test_axes_named_like_columns_keep_apart() -> None:
-    record = {
-        "name": "clash", "system": {"unknowns": {"z": "real"}, "equations": ["z^2 - region*left"]},
-        "axes": {"region": [-1, 1], "left": [-1, 1]},
-    }  # fmt: skip
+    record = yaml.safe_load("""
+        name: clash
+        system: {unknowns: {z: real}, equations: [z^2 - region*left]}
+        axes: {region: [-1, 1], left: [-1, 1]}
+    """)
     table = ptmcad.classify(ptmcad.slice_from_mapping(record)).to_dataframe("cells")
     assert {"region", "region_", "left_"} <= set(table.columns)
 

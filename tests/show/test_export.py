@@ -14,6 +14,7 @@ from typing import Any
 import jsonschema
 import pytest
 import sympy
+import yaml
 from support.few import few
 from support.maps import CONFIGS, shipped
 from support.programs import (
@@ -267,16 +268,15 @@ def test_msolve_eliminates_to_the_critical_curves(name: str) -> None:
     )
 
 
-EXCLUDED = {
-    "system": {
-        "parameters": {"q": {}},
-        "unknowns": {"x": "real", "inverse": "real"},
-        "equations": ["x*(x^2 + inverse - a)", "x*(inverse^2 - x - q)"],
-        "positive": ["x"],
-    },
-    "parameters": {"q": "b/(3 - a)"},
-    "axes": {"a": [-2, 2], "b": [-2, 2]},
-}
+EXCLUDED = yaml.safe_load("""
+system:
+  parameters: {q: {}}
+  unknowns: {x: real, inverse: real}
+  equations: [x*(x^2 + inverse - a), x*(inverse^2 - x - q)]
+  positive: [x]
+parameters: {q: b/(3 - a)}
+axes: {a: [-2, 2], b: [-2, 2]}
+""")
 """Solutions with x = 0 are infinitely many, and where a = 3 the equations have no meaning."""
 
 
@@ -341,31 +341,6 @@ def test_command_prints_or_writes_the_same(
     assert capsys.readouterr().out == "written   sub/fig3.txt\n"
     assert (tmp_path / "sub" / "fig3.txt").read_text(encoding="utf-8") == printed.out
     assert [path.name for path in (tmp_path / "sub").iterdir()] == ["fig3.txt"]
-
-
-@pytest.mark.parametrize(
-    ("arguments", "message"),
-    [
-        (["variety"], "--slice L1,L2"),
-        (["variety", "nowhere.yaml"], "nowhere.yaml"),
-        (["variety", "--slice", "L2,rho", "--format", "fortran"], "fortran"),
-        (["variety", "--slice", "L2,rho", "--out", "."], "is a folder"),
-        (["variety", "--slice", "L2,rho", "--set", "L3=1"], "L3"),
-        (["variety", "--slice", "L1,L2", "--set", "rho=(L1+L2)/2"], "lies inside"),
-    ],
-)
-def test_bad_input_is_one_message(
-    arguments: list[str],
-    message: str,
-    tmp_path: Path,
-    monkeypatch: pytest.MonkeyPatch,
-    capsys: pytest.CaptureFixture[str],
-) -> None:
-    monkeypatch.chdir(tmp_path)
-    assert run(arguments) == 2
-    shown = capsys.readouterr()
-    assert message in shown.err and shown.out == ""
-    assert not list(tmp_path.iterdir())
 
 
 def test_unknown_format_in_python() -> None:

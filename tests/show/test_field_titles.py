@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 import pytest
+import yaml
 
 import ptmcad
 
-SWITCH = {
-    "name": "switch",
-    "system": {"unknowns": {"u": "real"}, "equations": ["u^3 - a*u - b"], "stable": ["3*u^2 - a"]},
-    "axes": {"a": [-1, 2], "b": [-1, 1]},
-}
+SWITCH = yaml.safe_load("""
+name: switch
+system: {unknowns: {u: real}, equations: [u^3 - a*u - b], stable: [3*u^2 - a]}
+axes: {a: [-1, 2], b: [-1, 1]}
+""")
 
 
 @pytest.mark.parametrize(

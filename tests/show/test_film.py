@@ -9,6 +9,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import yaml
 from PIL import Image
 from support.maps import CONFIGS, shipped
 from support.replacing import replace
@@ -244,10 +245,12 @@ def test_a_system_cannot_be_drawn(tmp_path: Path, capsys: pytest.CaptureFixture[
 @pytest.mark.slow
 def test_a_certified_map_has_films_too(tmp_path: Path) -> None:
     pytest.importorskip("numba")
-    record = {
-        "name": "short", "mechanism": "ptm", "parameters": {"l0": "1/5", "F3": -10, "F4": -10},
-        "axes": {"rho": ["1", "6/5"], "L2": ["1", "6/5"]},
-    }  # fmt: skip
+    record = yaml.safe_load("""
+        name: short
+        mechanism: ptm
+        parameters: {l0: 1/5, F3: -10, F4: -10}
+        axes: {rho: ['1', 6/5], L2: ['1', 6/5]}
+    """)
     result = ptmcad.classify(record, tolerance="1/10", jobs=1)
     motion = result.animate("rho=21/20:23/20,L2=11/10", frames=3)
     with settings():

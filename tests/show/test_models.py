@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+import yaml
 from click.testing import CliRunner
 from support import pages
 
@@ -23,43 +24,36 @@ from ptmcad.show.render.posepicture import draw_poses
 from ptmcad.show.report import page
 from ptmcad.show.table import table
 
-PENDULUM: dict[str, Any] = {
-    "name": "pendulum",
-    "mechanism": {
-        "name": "pendulum",
-        "parameters": {
-            "L": {"kind": "length", "default": 1},
-            "a": {"kind": "base", "default": 1},
-            "k": {"kind": "stiffness", "default": 1},
-            "W": {"kind": "force", "default": 0},
-        },
-        "unknowns": {"th": "angle", "s": "length"},
-        "points": {"O": [0, 0], "A": [0, "a"], "B": ["s", 0], "P": ["L*sin(th)", "L*cos(th)"]},
-        "bars": [["O", "P"]],
-        "supports": {"O": "pin", "B": "slider x", "A": "slider y"},
-        "springs": [
-            {"between": ["A", "P"], "k": "k"},
-            {"between": ["B", "P"], "k": "k"},
-            {"between": ["B", "O"], "k": 2},
-        ],
-        "loads": {"P": ["1/10", "W"]},
-    },
-    "axes": {"a": [0, 3], "W": [-4, 4]},
-}
+PENDULUM: dict[str, Any] = yaml.safe_load("""
+name: pendulum
+mechanism:
+  name: pendulum
+  parameters:
+    L: {kind: length, default: 1}
+    a: {kind: base, default: 1}
+    k: {kind: stiffness, default: 1}
+    W: {kind: force, default: 0}
+  unknowns: {th: angle, s: length}
+  points: {O: [0, 0], A: [0, a], B: [s, 0], P: [L*sin(th), L*cos(th)]}
+  bars: [[O, P]]
+  supports: {O: pin, B: slider x, A: slider y}
+  springs: [{between: [A, P], k: k}, {between: [B, P], k: k}, {between: [B, O], k: 2}]
+  loads: {P: [1/10, W]}
+axes: {a: [0, 3], W: [-4, 4]}
+""")
 
-TURNED: dict[str, Any] = {
-    "name": "turned",
-    "mechanism": {
-        "parameters": {"c": {"kind": "stiffness"}, "W": {"kind": "force"}},
-        "unknowns": {"th": "angle"},
-        "points": {"O": [0, 0], "P": ["cos(th)", "sin(th)"]},
-        "bars": [["O", "P"]],
-        "supports": {"O": "pin"},
-        "torsion": [{"angle": "th", "k": "c", "rest": "pi/2"}, {"angle": "2*th", "k": "1/9"}],
-        "loads": {"P": {"weight": "W"}},
-    },
-    "axes": {"c": ["1/10", 1], "W": [0, 2]},
-}
+TURNED: dict[str, Any] = yaml.safe_load("""
+name: turned
+mechanism:
+  parameters: {c: {kind: stiffness}, W: {kind: force}}
+  unknowns: {th: angle}
+  points: {O: [0, 0], P: [cos(th), sin(th)]}
+  bars: [[O, P]]
+  supports: {O: pin}
+  torsion: [{angle: th, k: c, rest: pi/2}, {angle: 2*th, k: 1/9}]
+  loads: {P: {weight: W}}
+axes: {c: [1/10, 1], W: [0, 2]}
+""")
 
 
 def system(count: str = "total", **asked: Any) -> dict[str, Any]:

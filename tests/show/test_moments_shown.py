@@ -259,10 +259,10 @@ def test_the_page_of_a_certified_map_has_the_energies_of_moments_on_their_own_un
     assert seen
 
 
-CUSP = {
-    "system": {"unknowns": {"x": "real"}, "equations": ["x^3 - a*x + b"]},
-    "axes": {"a": [-2, 2], "b": [-2, 2]},
-}
+CUSP = yaml.safe_load("""
+system: {unknowns: {x: real}, equations: [x^3 - a*x + b]}
+axes: {a: [-2, 2], b: [-2, 2]}
+""")
 
 
 @pytest.mark.parametrize(

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+import yaml
 from mpl_toolkits.mplot3d import proj3d
 from support.replacing import replace
 
@@ -20,13 +21,13 @@ from ptmcad.show.render.solid import MAX_FLOORS, solid_figure
 from ptmcad.show.render.surfacepicture import MAX_SIDE, box_of, halved, towards_eye
 from ptmcad.show.style import DEFAULT
 
-RECORD: dict[str, Any] = {
-    "name": "cubic",
-    "system": {"unknowns": {"x": "real"}, "equations": ["x^3 - a*x + b + c*x^2"]},
-    "axes": {"a": [-2, 2], "b": [-2, 2]},
-    "free": {"c": [0, 3]},
-    "members": 7,
-}
+RECORD: dict[str, Any] = yaml.safe_load("""
+name: cubic
+system: {unknowns: {x: real}, equations: [x^3 - a*x + b + c*x^2]}
+axes: {a: [-2, 2], b: [-2, 2]}
+free: {c: [0, 3]}
+members: 7
+""")
 
 
 @pytest.fixture(name="family", scope="module")

@@ -13,6 +13,7 @@ from html.parser import HTMLParser
 from typing import Any
 
 import pytest
+import yaml
 from support.certified_map import certified_map
 from support.maps import CONFIGS, shipped
 
@@ -22,12 +23,12 @@ from ptmcad.answer.regionmap import RegionMap, Status
 from ptmcad.text.enclosure import AlgebraicNumber
 
 SCREEN = 200
-CUBIC: dict[str, Any] = {
-    "name": "cubic",
-    "system": {"unknowns": {"x": "real"}, "equations": ["x^3 - a*x + b + c*x^2"]},
-    "axes": {"a": [-2, 2], "b": [-2, 2]},
-    "free": {"c": [0, 3]},
-}
+CUBIC: dict[str, Any] = yaml.safe_load("""
+name: cubic
+system: {unknowns: {x: real}, equations: [x^3 - a*x + b + c*x^2]}
+axes: {a: [-2, 2], b: [-2, 2]}
+free: {c: [0, 3]}
+""")
 
 
 @functools.cache
@@ -72,13 +73,14 @@ def returned() -> set[str]:
 def every_kind(tmp_path_factory: pytest.TempPathFactory) -> list[object]:
     slice = ptmcad.load(CONFIGS / "fig4.yaml")
     changed = ptmcad.family(CUBIC, values=[0, 1], areas=False, changes=True)
+    lengths = yaml.safe_load("""
+        mechanism: ptm
+        parameters: {L1: a}
+        axes: {L2: [1, 2], rho: [1, 2]}
+        sweep: {a: [1]}
+    """)
     swept = ptmcad.sweep(
-        {
-            "mechanism": "ptm",
-            "parameters": {"L1": "a"},
-            "axes": {"L2": [1, 2], "rho": [1, 2]},
-            "sweep": {"a": [1]},
-        },
+        lengths,
         tmp_path_factory.mktemp("sweep"),
         jobs=1,
         wanted={"areas": False},

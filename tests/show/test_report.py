@@ -120,14 +120,14 @@ def test_the_page_asks_for_nothing(shipped: Shipped) -> None:
     assert not re.search(r"https?:(?!//www\.w3\.org/2000/svg)", text)
 
 
-SUSPENDED = {
-    "name": "suspended",
-    "unknowns": {"x": "length", "y": "length"},
-    "points": {"A": ["-a", 0], "B": ["a", 0], "P": ["x", "y"]},
-    "parameters": {"a": {"kind": "base"}, "f": {"kind": "force"}},
-    "springs": [{"between": ["A", "P"], "k": 1}, {"between": ["B", "P"], "k": 1}],
-    "loads": {"P": [0, "f"]},
-}
+SUSPENDED = yaml.safe_load("""
+name: suspended
+unknowns: {x: length, y: length}
+points: {A: [-a, 0], B: [a, 0], P: [x, y]}
+parameters: {a: {kind: base}, f: {kind: force}}
+springs: [{between: [A, P], k: 1}, {between: [B, P], k: 1}]
+loads: {P: [0, f]}
+""")
 CUBIC = {"name": "cubic", "unknowns": {"x": "real"}, "equations": ["x^3 - a*x - f"]}
 
 

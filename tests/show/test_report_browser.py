@@ -11,6 +11,7 @@ from math import pi
 from pathlib import Path
 
 import pytest
+import yaml
 from support import browser as chromium
 from support.browser import Browser
 from support.certified_maps import certified
@@ -464,22 +465,17 @@ def test_a_landscape_under_a_moment_is_level_at_the_equilibria(
     """The browser's table of what is drawn, by differences around each equilibrium, against the
     moment left out.
     """
-    record = {
-        "name": "turned",
-        "mechanism": {
-            "parameters": {"M": {}, "F": {"kind": "force"}},
-            "unknowns": {"th": "angle", "ph": "angle"},
-            "points": {
-                "O": [0, 0],
-                "P": ["cos(th)", "sin(th)"],
-                "Q": ["cos(th) + cos(ph)/2", "sin(th) + sin(ph)/2"],
-            },
-            "torsion": [{"angle": "th", "k": 2}, {"angle": "ph - th", "k": 1}],
-            "moments": {"th": "M", "ph": "1/5"},
-            "loads": {"Q": ["F", 0]},
-        },
-        "axes": {"M": [1, 2], "F": [0, 1]},
-    }
+    record = yaml.safe_load("""
+        name: turned
+        mechanism:
+          parameters: {M: {}, F: {kind: force}}
+          unknowns: {th: angle, ph: angle}
+          points: {O: [0, 0], P: [cos(th), sin(th)], Q: [cos(th) + cos(ph)/2, sin(th) + sin(ph)/2]}
+          torsion: [{angle: th, k: 2}, {angle: ph - th, k: 1}]
+          moments: {th: M, ph: 1/5}
+          loads: {Q: [F, 0]}
+        axes: {M: [1, 2], F: [0, 1]}
+    """)
     result = ptmcad.classify(ptmcad.slice_from_mapping(record), area_tolerance="1/10")
     path = tmp_path / "turned.html"
     path.write_text(page(result), encoding="utf-8")

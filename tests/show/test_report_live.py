@@ -14,6 +14,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import yaml
 from support import browser as chromium
 from support.browser import Browser
 from support.certified_maps import crossing, cusp
@@ -201,22 +202,22 @@ def test_at_a_sample_the_cell_is_known_however_near_its_rims_are(
     assert "not determined" in b.run(STATUS)
 
 
-TURNED = {
-    "name": "turned",
-    "mechanism": {
-        "parameters": {"M": {}, "F": {"kind": "force"}, "k": {"kind": "stiffness", "default": 3}},
-        "unknowns": {"th": "angle", "ph": "angle", "s": "length"},
-        "points": {
-            "O": [0, 0], "W": [2, 1], "P": ["cos(th)", "sin(th)"],
-            "Q": ["cos(th) + cos(ph)/2 + s", "sin(th) + sin(ph)/2"],
-        },
-        "springs": [{"between": ["W", "Q"], "k": "k", "free": "1/3"}, {"between": ["W", "P"], "k": "k/2"}],
-        "torsion": [{"angle": "th", "k": 2}, {"angle": "ph - 2*th", "k": 1}],
-        "moments": {"th": "M", "ph": "1/5"},
-        "loads": {"Q": ["F", "-F/7"]},
-    },
-    "axes": {"M": [1, 2], "F": [0, 1]},
-}  # fmt: skip
+TURNED = yaml.safe_load("""
+name: turned
+mechanism:
+  parameters: {M: {}, F: {kind: force}, k: {kind: stiffness, default: 3}}
+  unknowns: {th: angle, ph: angle, s: length}
+  points:
+    O: [0, 0]
+    W: [2, 1]
+    P: [cos(th), sin(th)]
+    Q: [cos(th) + cos(ph)/2 + s, sin(th) + sin(ph)/2]
+  springs: [{between: [W, Q], k: k, free: 1/3}, {between: [W, P], k: k/2}]
+  torsion: [{angle: th, k: 2}, {angle: ph - 2*th, k: 1}]
+  moments: {th: M, ph: 1/5}
+  loads: {Q: [F, -F/7]}
+axes: {M: [1, 2], F: [0, 1]}
+""")
 
 
 @pytest.mark.parametrize("name", ["fig4", "free", "turned", "kuramoto", "escape", "schloegl"])

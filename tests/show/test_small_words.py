@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pytest
+import yaml
 
 import ptmcad
 from ptmcad.errors import ConfigError
@@ -11,13 +12,13 @@ from ptmcad.show.ranges.pathtable import _heights
 
 
 def test_heights_have_the_names_of_points() -> None:
-    arms = {
-        "unknowns": {"th": "angle", "phi": "angle"},
-        "points": {"O": [0, 0], "A2": ["sin(th)", "cos(th)"], "B2": ["sin(phi)", "cos(phi)"]},
-        "springs": [{"between": ["A2", "B2"], "k": 1}],
-        "loads": {"A2": ["H", "-W"]},
-        "parameters": {"H": {"kind": "force"}, "W": {"kind": "force"}},
-    }
+    arms = yaml.safe_load("""
+        unknowns: {th: angle, phi: angle}
+        points: {O: [0, 0], A2: [sin(th), cos(th)], B2: [sin(phi), cos(phi)]}
+        springs: [{between: [A2, B2], k: 1}]
+        loads: {A2: [H, -W]}
+        parameters: {H: {kind: force}, W: {kind: force}}
+    """)
     assert _heights(ptmcad.Mechanism(arms)) == ["y of A2", "y of B2"]
     own = ptm()
     assert isinstance(own, Mechanism)

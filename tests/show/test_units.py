@@ -22,11 +22,11 @@ from ptmcad.show.report.reportpage import page
 from ptmcad.show.units import area_unit, energy_unit, unit
 
 ROOT = Path(__file__).resolve().parents[2]
-RECORD = {
-    "axes": {"rho": [0, 2], "L2": [0, 2]},
-    "parameters": {"F3": -10, "F4": -10},
-    "units": {"length": "mm", "force": "N"},
-}
+RECORD = yaml.safe_load("""
+axes: {rho: [0, 2], L2: [0, 2]}
+parameters: {F3: -10, F4: -10}
+units: {length: mm, force: N}
+""")
 
 
 @pytest.mark.parametrize(
@@ -201,10 +201,11 @@ def test_the_page_has_the_declared_units_of_its_tables() -> None:
 
 
 def test_the_page_names_the_units_of_areas_and_axes() -> None:
-    found = ptmcad.classify(ptmcad.slice_from_mapping({
-        "axes": {"rho": [0, 2], "F3": [-20, 0]}, "parameters": {"L2": "3/2", "F4": -10},
-        "units": {"length": "mm", "force": "N"},
-    }))  # fmt: skip
+    found = ptmcad.classify(ptmcad.slice_from_mapping(yaml.safe_load("""
+        axes: {rho: [0, 2], F3: [-20, 0]}
+        parameters: {L2: 3/2, F4: -10}
+        units: {length: mm, force: N}
+    """)))  # fmt: skip
     text = page(found)
     assert "area (N·mm)" in text
     assert "ρ from 0 to 2 mm; F₃ from -20 to 0 N" in text

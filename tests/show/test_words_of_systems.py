@@ -8,6 +8,7 @@ from collections.abc import Mapping
 from typing import Any
 
 import pytest
+import yaml
 
 import ptmcad
 from ptmcad.answer.poses import Poses
@@ -22,24 +23,23 @@ from ptmcad.show.render.landscape import draw_landscape
 from ptmcad.text.expressions import axis
 from ptmcad.text.parsing import parse
 
-QUINTIC: Mapping[str, Any] = {
-    "system": {
-        "parameters": {"c": {}},
-        "unknowns": {"x": "real"},
-        "equations": ["x^5 - 5*x^3 + 4*x - a*c + b"],
-        "stable": ["x - 1/2"],
-    },
-    "parameters": {"c": "1/(1 - b - 3)"},
-    "axes": {"a": [-2, 2], "b": [-1, 2]},
-}
+QUINTIC: Mapping[str, Any] = yaml.safe_load("""
+system:
+  parameters: {c: {}}
+  unknowns: {x: real}
+  equations: [x^5 - 5*x^3 + 4*x - a*c + b]
+  stable: [x - 1/2]
+parameters: {c: 1/(1 - b - 3)}
+axes: {a: [-2, 2], b: [-1, 2]}
+""")
 """At a = 1/3 two roots that are not stable vanish at b = 1.318, and two stable ones are left on
 either side.
 """
 
-CONDITION_THAT_VANISHES: Mapping[str, Any] = {
-    "system": {"unknowns": {"x": "real"}, "equations": ["(x - a)*(x^2 - b)"], "stable": ["a - x"]},
-    "axes": {"a": [-2, 2], "b": [-1, 2]},
-}
+CONDITION_THAT_VANISHES: Mapping[str, Any] = yaml.safe_load("""
+system: {unknowns: {x: real}, equations: [(x - a)*(x^2 - b)], stable: [a - x]}
+axes: {a: [-2, 2], b: [-1, 2]}
+""")
 
 
 def slice_of(record: Mapping[str, Any]) -> Slice:

@@ -250,39 +250,6 @@ def test_a_record_is_there_in_any_folder(tmp_path: Path, monkeypatch: pytest.Mon
         load("fig6")
 
 
-@pytest.mark.parametrize(
-    ("arguments", "told"),
-    [
-        (["nowhere.yaml"], "nowhere.yaml"),
-        (["--method", "maple"], "maple"),
-        (["--rounds", "0"], "--rounds"),
-        (["--time-limit", "0"], "--time-limit: 0.0 is not a positive number"),
-        (["--compare", "a.json", "b.json"], "a.json"),
-        (["--compare", "a.json", "b.json", "fig4.yaml"], "takes no CONFIG"),
-        (
-            [str(CONFIGS / "fig3.yaml"), str(CONFIGS / "fig3.yaml")],
-            "two records have the name fig3",
-        ),
-        ([str(CONFIGS / "fig3.yaml"), "--out", "file"], "file"),
-    ],
-    ids=lambda x: " ".join(x)[-40:] if isinstance(x, list) else "",
-)
-def test_bad_input_gets_one_message(
-    arguments: list[str],
-    told: str,
-    tmp_path: Path,
-    monkeypatch: pytest.MonkeyPatch,
-    capsys: pytest.CaptureFixture[str],
-) -> None:
-    monkeypatch.chdir(tmp_path)
-    Path("file").write_text("", encoding="utf-8")
-    assert run(["bench", *arguments]) == 2
-    error = capsys.readouterr().err
-    assert told in error
-    assert "Traceback" not in error
-    assert [path.name for path in tmp_path.iterdir()] == ["file"]
-
-
 @pytest.mark.slow
 def test_one_slice_by_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """All files are written, belong together, and can be read by what reads them; the reference

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import re
+from itertools import accumulate
 from typing import Any
 
 from ptmcad.show.render.polylines import GRID
@@ -19,14 +20,7 @@ def data_of(text: str) -> dict[str, Any]:
 
 def corners(data: str) -> list[tuple[float, float]]:
     """The corners of one line, read as SVG's grammar says, in the picture's units."""
-    assert re.fullmatch(r"M-?\d+[ -]\d+(?:[lhv]-?\d+(?:(?: |(?=-))-?\d+)*)*z?", data), data
-    first, *pieces = re.findall(r"[Mlhv][^Mlhvz]*", data)
-    x, y = (int(number) for number in re.findall(r"-?\d+", first))
-    found = [(x, y)]
-    for piece in pieces:
-        numbers = [int(number) for number in re.findall(r"-?\d+", piece)]
-        steps = {"h": [(n, 0) for n in numbers], "v": [(0, n) for n in numbers]}.get(piece[0])
-        for dx, dy in zip(numbers[::2], numbers[1::2], strict=True) if steps is None else steps:
-            x, y = x + dx, y + dy
-            found.append((x, y))
-    return [(x / GRID, y / GRID) for x, y in found]
+    assert re.fullmatch(r"M-?\d+[ -]\d+l-?\d+(?:(?: |(?=-))-?\d+)*z?", data), data
+    numbers = [int(number) for number in re.findall(r"-?\d+", data)]
+    places = zip(accumulate(numbers[::2]), accumulate(numbers[1::2]), strict=True)
+    return [(x / GRID, y / GRID) for x, y in places]

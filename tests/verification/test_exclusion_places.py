@@ -36,11 +36,11 @@ from ptmcad.verification.exclusion import places
 from ptmcad.verification.exclusion.criticalsystems import halves_over
 from ptmcad.verification.exclusion.places import SolutionPlaces
 
-PAPER: dict[str, Any] = {
-    "mechanism": "ptm",
-    "parameters": {"L1": 1, "k": 100, "F3": -10, "F4": -10, "l0": "1/5"},
-    "axes": {"rho": [0, "3/2"], "L2": [0, 2]},
-}
+PAPER: dict[str, Any] = yaml.safe_load("""
+mechanism: ptm
+parameters: {L1: 1, k: 100, F3: -10, F4: -10, l0: 1/5}
+axes: {rho: [0, 3/2], L2: [0, 2]}
+""")
 SLIDING: dict[str, Any] = yaml.safe_load("""
 name: sliding
 mechanism:

@@ -39,11 +39,12 @@ mechanism:
   loads: {P: [1/10, 0], Q: [0, W]}
 axes: {a: [1, 2], W: [1/2, 1]}
 """)
-PAPER: dict[str, Any] = {
-    "name": "small", "mechanism": "ptm",
-    "parameters": {"L1": "1", "k": "100", "F3": "-10", "F4": "-10", "l0": "1/5"},
-    "axes": {"rho": ["1", "3/2"], "L2": ["3/4", "5/4"]},
-}  # fmt: skip
+PAPER: dict[str, Any] = yaml.safe_load("""
+name: small
+mechanism: ptm
+parameters: {L1: '1', k: '100', F3: '-10', F4: '-10', l0: 1/5}
+axes: {rho: ['1', 3/2], L2: [3/4, 5/4]}
+""")
 LOOP = yaml.safe_load((CONFIGS / "mechanisms" / "four-bar-free.yaml").read_text(encoding="utf-8"))
 LOOP.pop("reference")
 RECORDS = {"ptm": PAPER, "chain": CHAIN, "loop": LOOP}

@@ -11,6 +11,7 @@ from math import prod
 from random import Random
 
 import pytest
+import yaml
 from flint import fmpq, fmpq_mpoly
 from support.replacing import replace
 from support.shipped_records import EXACT
@@ -40,8 +41,11 @@ def test_values_without_large_primes_reject_no_true_map(shipped: Shipped) -> Non
 
 def test_a_map_is_accepted_with_the_points_of_its_own_hash() -> None:
     """Parallel lines, whose values at the first point have small primes only."""
-    record = {"name": "lines", "parameters": {"L1": 1, "L2": 1, "rho": "1 + (y - x)/16"},
-              "axes": {"x": [0, 1], "y": [0, 1]}}  # fmt: skip
+    record = yaml.safe_load("""
+        name: lines
+        parameters: {L1: 1, L2: 1, rho: 1 + (y - x)/16}
+        axes: {x: [0, 1], y: [0, 1]}
+    """)
     report = ptmcad.verify(ptmcad.classify(ptmcad.slice_from_mapping(record)))
     assert report.ok, report.violation
 

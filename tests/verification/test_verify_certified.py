@@ -10,6 +10,7 @@ from fractions import Fraction
 from pathlib import Path
 
 import pytest
+import yaml
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from support.counting import MIDDLE, counted_at
@@ -398,18 +399,17 @@ def test_a_count_that_the_checker_does_not_know_is_refused(
 
 def test_conditions_that_are_numbers_all_over_a_slice_are_none() -> None:
     """A map with such ones was said to be false: nothing is stored of them."""
-    record = {
-        "name": "settled",
-        "system": {
-            "parameters": {"c": {"kind": "number"}},
-            "unknowns": {"x": "real"},
-            "equations": ["x^2 - a"],
-            "positive": ["3*c - 1"],
-            "stable": ["c", "2", "x - b"],
-        },
-        "parameters": {"c": 1},
-        "axes": {"a": [-1, 2], "b": [-1, 1]},
-    }
+    record = yaml.safe_load("""
+        name: settled
+        system:
+          parameters: {c: {kind: number}}
+          unknowns: {x: real}
+          equations: [x^2 - a]
+          positive: [3*c - 1]
+          stable: [c, '2', x - b]
+        parameters: {c: 1}
+        axes: {a: [-1, 2], b: [-1, 1]}
+    """)
     found = ptmcad.classify(
         slice_from_mapping(record), engine="certified", tolerance="1/10", jobs=1
     )

@@ -510,10 +510,10 @@ def test_no_solution_is_beyond_the_bounds_of_real_unknowns() -> None:
     for a in (1, 100, 10**6):
         (bound,) = half_widths(cubic, {"a": arb(a), "b": arb(1, 1)})
         assert a**0.5 < bound < 4 * a**0.5
-    ramp = {
-        "system": {"unknowns": {"x": "real"}, "equations": ["a*x + b"]},
-        "axes": {"a": [-1, 1], "b": [-1, 1]},
-    }
+    ramp = yaml.safe_load("""
+        system: {unknowns: {x: real}, equations: [a*x + b]}
+        axes: {a: [-1, 1], b: [-1, 1]}
+    """)
     form = form_of(ptmcad.slice_from_mapping({"name": "r", **ramp}))
     assert half_widths(form, {"a": arb(1), "b": arb(0, 3)}) == (4.0,)
     with pytest.raises(Unproved, match="no bound of the unknown x"):

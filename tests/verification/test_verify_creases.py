@@ -48,12 +48,12 @@ def record(mechanism: dict[str, Any], count: str = "index", **axes: list[Any]) -
     }
 
 
-CRANK: dict[str, Any] = {
-    "unknowns": {"th": "angle"},
-    "points": {"O": [0, 0], "A": [1, 0], "P": ["cos(th)", "sin(th)"]},
-    "springs": [{"between": ["A", "P"], "k": 1, "free": "l"}],
-    "loads": {"P": ["F", "G"]},
-}
+CRANK: dict[str, Any] = yaml.safe_load("""
+unknowns: {th: angle}
+points: {O: [0, 0], A: [1, 0], P: [cos(th), sin(th)]}
+springs: [{between: [A, P], k: 1, free: l}]
+loads: {P: [F, G]}
+""")
 BEHIND: dict[str, Any] = {**CRANK, "points": {**CRANK["points"], "A": [-1, 0]}}
 """The crease at half a turn, where the search begins and ends."""
 LEANING: dict[str, Any] = {
@@ -68,12 +68,12 @@ TILTED: dict[str, Any] = {
     **CRANK,
     "points": {"O": [0, 0], "A": [1, 2], "P": ["cos(th) - 2*sin(th)", "2*cos(th) + sin(th)"]},
 }
-PAIR: dict[str, Any] = {
-    "unknowns": {"a": "angle", "b": "angle"},
-    "points": {"O": [0, 0], "P": ["cos(a)", "sin(a)"], "Q": ["cos(b)", "sin(b)"]},
-    "springs": [{"between": ["P", "Q"], "k": 1, "free": "l"}],
-    "loads": {"P": ["F", "G"], "Q": ["1/3", "-1/7"]},
-}
+PAIR: dict[str, Any] = yaml.safe_load("""
+unknowns: {a: angle, b: angle}
+points: {O: [0, 0], P: [cos(a), sin(a)], Q: [cos(b), sin(b)]}
+springs: [{between: [P, Q], k: 1, free: l}]
+loads: {P: [F, G], Q: [1/3, -1/7]}
+""")
 ARM: dict[str, Any] = yaml.safe_load("""
 unknowns: {a: angle, x: length}
 points: {O: [0, 0], A: [1, 0], S: [x*cos(a), x*sin(a)]}

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+import yaml
 from support.replacing import replace
 
 import ptmcad
@@ -19,15 +20,12 @@ from ptmcad.verification import verify_design
 from ptmcad.verification.designclaims import _check_bound, _check_boxes, _DesignLines
 from ptmcad.verification.report import NotKnown, Unchecked, Violation
 
-BALL: dict[str, Any] = {
-    "name": "ball",
-    "system": {
-        "unknowns": {"u": "real"},
-        "equations": ["u^2 - 1 + (x - b)^2 + (a - 1)^2 + (b - 1/2)^2"],
-    },
-    "parameters": {"b": 0},
-    "axes": {"x": [-2, 4], "a": [0, 2]},
-}
+BALL: dict[str, Any] = yaml.safe_load("""
+name: ball
+system: {unknowns: {u: real}, equations: [u^2 - 1 + (x - b)^2 + (a - 1)^2 + (b - 1/2)^2]}
+parameters: {b: 0}
+axes: {x: [-2, 4], a: [0, 2]}
+""")
 OVER = {"a": [0, 2], "b": [0, 1]}
 
 

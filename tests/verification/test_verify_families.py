@@ -9,6 +9,7 @@ from functools import cache
 from typing import Any
 
 import pytest
+import yaml
 from support.replacing import replace
 
 import ptmcad
@@ -18,14 +19,19 @@ from ptmcad.errors import DegenerateSliceError
 from ptmcad.question.config import member_like
 from ptmcad.verification import verify_surfaces
 
-LOADS = {
-    "mechanism": "ptm", "parameters": {"F3": "F", "F4": "F"}, "axes": {"rho": [0, 2], "L2": [0, 2]},
-    "free": {"F": [-40, 0]}, "members": 2,
-}  # fmt: skip
-BOWL = {
-    "system": {"unknowns": {"u": "real"}, "equations": ["u^2 - c + a^2 + b^2"]},
-    "axes": {"a": [-1, 1], "b": [-1, 1]}, "free": {"c": [-1, 3]}, "members": 2,
-}  # fmt: skip
+LOADS = yaml.safe_load("""
+mechanism: ptm
+parameters: {F3: F, F4: F}
+axes: {rho: [0, 2], L2: [0, 2]}
+free: {F: [-40, 0]}
+members: 2
+""")
+BOWL = yaml.safe_load("""
+system: {unknowns: {u: real}, equations: [u^2 - c + a^2 + b^2]}
+axes: {a: [-1, 1], b: [-1, 1]}
+free: {c: [-1, 3]}
+members: 2
+""")
 LINES = {**BOWL, "system": {"unknowns": {"u": "real"}, "equations": ["(u^2 - a + c)*(u - b - 9)"]}}
 
 

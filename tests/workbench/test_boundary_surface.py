@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+import yaml
 from flint import fmpz_poly
 from support.few import few
 from support.replacing import replace
@@ -39,10 +40,13 @@ def of(equation: str, low: Any, high: Any, axes: Any = None, members: int = 3) -
 BOWL = of("u^2 - c + a^2 + b^2", -1, 3)
 CONE = of("u^2 - c^2 + a^2 + b^2", -1, 1, members=2)
 SWALLOWTAIL = of("u^4 + a*u^2 + b*u + c", -1, 1, {"a": [-2, 2], "b": [-2, 2]})
-LOADS = {
-    "mechanism": "ptm", "parameters": {"F3": "F", "F4": "F"}, "axes": {"rho": [0, 2], "L2": [0, 2]},
-    "free": {"F": [-40, 0]}, "members": 2,
-}  # fmt: skip
+LOADS = yaml.safe_load("""
+mechanism: ptm
+parameters: {F3: F, F4: F}
+axes: {rho: [0, 2], L2: [0, 2]}
+free: {F: [-40, 0]}
+members: 2
+""")
 SHIPPED = {"bowl": BOWL, "cone": CONE, "swallowtail": SWALLOWTAIL, "loads": LOADS}
 
 

@@ -7,6 +7,7 @@ from math import pi, sqrt
 from typing import Any
 
 import pytest
+import yaml
 
 import ptmcad
 from ptmcad.errors import ConfigError
@@ -104,10 +105,10 @@ def test_an_area_is_enclosed_and_bounded() -> None:
     assert found.bound is not None and 3 / 4 * pi <= found.bound
 
 
-WELL: dict[str, Any] = {
-    "system": {"unknowns": {"u": "real"}, "potential": "u^4 - a*u^2 + b*u"},
-    "axes": {"a": [1, 2], "b": [-1, 1]},
-}
+WELL: dict[str, Any] = yaml.safe_load("""
+system: {unknowns: {u: real}, potential: u^4 - a*u^2 + b*u}
+axes: {a: [1, 2], b: [-1, 1]}
+""")
 
 
 @pytest.mark.parametrize(
@@ -221,10 +222,10 @@ def test_what_is_wrong_is_said(record: dict[str, Any], options: dict[str, Any], 
 
 # ------------------------------------------------------------------------------------- the paper's mechanism
 
-LOADED: dict[str, Any] = {
-    "axes": {"rho": [0, 2], "L2": [0, 2]},
-    "parameters": {"L1": 1, "k": 100, "F3": -10, "F4": -10},
-}
+LOADED: dict[str, Any] = yaml.safe_load("""
+axes: {rho: [0, 2], L2: [0, 2]}
+parameters: {L1: 1, k: 100, F3: -10, F4: -10}
+""")
 BOTH = {"L1": ["1/2", 2], "L2": ["1/2", 2]}
 
 

@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+import yaml
 from support.few import few
 from support.maps import CONFIGS, shipped
 
@@ -186,10 +187,11 @@ def test_a_barrier_is_the_level_at_which_a_flooded_landscape_joins_two_poses(num
 
 
 def cubic() -> RegionMap:
-    record = {
-        "name": "cubic", "system": {"unknowns": {"x": "real"}, "equations": ["x^3 - a*x + b"]},
-        "axes": {"a": [-1, 3], "b": [-2, 2]},
-    }  # fmt: skip
+    record = yaml.safe_load("""
+        name: cubic
+        system: {unknowns: {x: real}, equations: [x^3 - a*x + b]}
+        axes: {a: [-1, 3], b: [-2, 2]}
+    """)
     return ptmcad.classify(ptmcad.slice_from_mapping(record))
 
 
@@ -208,10 +210,12 @@ def test_roots_of_a_cubic() -> None:
 @pytest.mark.slow
 def test_a_certified_map_and_its_stable_poses(monkeypatch: pytest.MonkeyPatch) -> None:
     pytest.importorskip("numba")
-    record = {
-        "name": "short", "mechanism": "ptm", "parameters": {"l0": "1/5", "F3": -10, "F4": -10},
-        "axes": {"rho": ["1", "6/5"], "L2": ["1", "6/5"]},
-    }  # fmt: skip
+    record = yaml.safe_load("""
+        name: short
+        mechanism: ptm
+        parameters: {l0: 1/5, F3: -10, F4: -10}
+        axes: {rho: ['1', 6/5], L2: ['1', 6/5]}
+    """)
     result = ptmcad.classify(ptmcad.slice_from_mapping(record), tolerance="1/10", jobs=1)
     field = field_of(result, request_of(result.slice, "energy", "stable:1"), 12, checks=10)
     assert (field.missed, field.checked > 0, field.difference < 1e-9) == (0, True, True)
@@ -303,28 +307,6 @@ def test_the_command_writes_pictures_and_numbers(
     assert np.array_equal(table["value"].reshape(15, 20), expected, equal_nan=True)
 
 
-@pytest.mark.parametrize(
-    "arguments", [["--value", "nothing"], ["--pose", "best"], ["--pixels", "0"]]
-)
-def test_bad_options_leave_nothing(
-    arguments: list[str], tmp_path: Any, capsys: pytest.CaptureFixture[str]
-) -> None:
-    assert run(["map", "--slice", "L2,rho", "--out", str(tmp_path), *arguments]) == 2
-    assert arguments[0] in capsys.readouterr().err
-    assert not list(tmp_path.iterdir())
-
-
-@pytest.mark.parametrize(
-    "request_", ["--value barrier --pose saddle:1", "--value enrgy", "--value th1^1e400"]
-)
-def test_what_means_nothing_is_refused_before_the_map_is_made(
-    request_: str, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
-    monkeypatch.setattr("ptmcad.ask.classification.region_map", None)
-    assert run(["map", "--slice", "L2,rho", *request_.split()]) == 2
-    assert capsys.readouterr().err.startswith("error: --")
-
-
 def test_a_difference_from_exact_poses_is_said(
     tmp_path: Any, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -351,17 +333,16 @@ def test_a_difference_from_exact_poses_is_said(
     assert "do not trust this map" in capsys.readouterr().err
 
 
-TURNED = {
-    "name": "turned",
-    "mechanism": {
-        "parameters": {"M": {"kind": "force"}, "b": {"kind": "base"}},
-        "unknowns": {"th": "angle"},
-        "points": {"O": [0, 0], "B": ["b", 0], "P": ["cos(th)", "sin(th)"]},
-        "springs": [{"between": ["B", "P"], "k": 2}],
-        "moments": {"th": "M*sin(th)^2"},
-    },
-    "axes": {"b": ["1/2", 2], "M": [-1, 1]},
-}  # fmt: skip
+TURNED = yaml.safe_load("""
+name: turned
+mechanism:
+  parameters: {M: {kind: force}, b: {kind: base}}
+  unknowns: {th: angle}
+  points: {O: [0, 0], B: [b, 0], P: [cos(th), sin(th)]}
+  springs: [{between: [B, P], k: 2}]
+  moments: {th: M*sin(th)^2}
+axes: {b: [1/2, 2], M: [-1, 1]}
+""")
 """A moment whose mean works on the angle, and whose rest is the slope of an energy."""
 
 
@@ -397,10 +378,11 @@ def test_a_barrier_that_was_not_found_is_counted(monkeypatch: pytest.MonkeyPatch
 
 
 def test_windows_beyond_doubles_are_refused() -> None:
-    record = {
-        "name": "vast", "system": {"unknowns": {"z": "real"}, "equations": ["z^2 - x*y"]},
-        "axes": {"x": ["1e400", "2e400"], "y": [1, 2]},
-    }  # fmt: skip
+    record = yaml.safe_load("""
+        name: vast
+        system: {unknowns: {z: real}, equations: [z^2 - x*y]}
+        axes: {x: [1e400, 2e400], y: [1, 2]}
+    """)
     result = ptmcad.classify(record)
     assert result.boundaries() == ()  # no curve is in the window
     for ask in (

@@ -8,6 +8,7 @@ from math import degrees, pi
 
 import numpy as np
 import pytest
+import yaml
 from support.maps import shipped
 
 import ptmcad
@@ -77,10 +78,11 @@ def test_a_pose_that_gives_way_by_symmetry_falls_to_a_side() -> None:
 def test_what_was_not_stable_or_has_no_energy_does_not_fall() -> None:
     saddle = shipped("fig4").animate("rho=3/4:6/5,L2=3/2", "saddle:1", frames=12)
     assert "the pose, which was not stable, vanishes" in saddle.end
-    record = {
-        "name": "cubic", "system": {"unknowns": {"x": "real"}, "equations": ["x^3 - a*x + b"]},
-        "axes": {"a": [-1, 3], "b": [-2, 2]},
-    }  # fmt: skip
+    record = yaml.safe_load("""
+        name: cubic
+        system: {unknowns: {x: real}, equations: [x^3 - a*x + b]}
+        axes: {a: [-1, 3], b: [-2, 2]}
+    """)
     cubic = ptmcad.classify(record).animate("a=2:0,b=1/2", "pose:2", frames=12)
     assert (
         "a = 1.19055, b = 0.5 the pose vanishes, and without a potential nothing says where"
@@ -162,14 +164,10 @@ def test_a_path_goes_evenly_through_its_corners() -> None:
 
 
 def test_a_pose_that_comes_to_a_condition_leaves_and_none_falls_beyond() -> None:
-    record = {
-        "system": {
-            "unknowns": {"x": "real"},
-            "potential": "x^4/4 - x^2/2 - b*x",
-            "positive": ["x + c"],
-        },
-        "axes": {"b": [-1, 1], "c": [0, 2]},
-    }
+    record = yaml.safe_load("""
+        system: {unknowns: {x: real}, potential: x^4/4 - x^2/2 - b*x, positive: [x + c]}
+        axes: {b: [-1, 1], c: [0, 2]}
+    """)
     result = ptmcad.classify(ptmcad.slice_from_mapping(record))
     falls = result.animate("b=9/10:-9/10,c=1/4", frames=20)
     assert (

@@ -6,6 +6,7 @@ from fractions import Fraction
 from pathlib import Path
 
 import pytest
+import yaml
 from support.maps import CONFIGS
 
 import ptmcad
@@ -86,8 +87,11 @@ def test_ends_may_be_given() -> None:
 def test_slices_at_values_are_those_that_one_would_write() -> None:
     found = panel("families/equal-loads")
     values = found.values({"F": "-33/2", "k": "90.5"})
-    alone = ptmcad.family({"axes": {"rho": [0, 2], "L2": [0, 2]}, "parameters": {"k": "181/2", "F3": "F", "F4": "F"},
-                           "free": {"F": [-40, 0]}}, values=["-33/2"], areas=False).members[0]  # fmt: skip
+    alone = ptmcad.family(yaml.safe_load("""
+        axes: {rho: [0, 2], L2: [0, 2]}
+        parameters: {k: 181/2, F3: F, F4: F}
+        free: {F: [-40, 0]}
+    """), values=["-33/2"], areas=False).members[0]  # fmt: skip
     assert dict(found.slice(values).parameters) == dict(alone.slice.parameters)
     assert found.slice(values).name == "equal-loads-k-181_2-F-33_2"
     assert found.slice(found.start()).title.startswith("The slice of fig. 4")

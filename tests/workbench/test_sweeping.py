@@ -130,6 +130,13 @@ def test_the_index_does_not_depend_on_the_number_of_processes(tmp_path: Path) ->
 # ------------------------------------------------------------------------------------------------------------ failures
 
 
+def process_of(pool: Pool) -> subprocess.Popen[bytes]:
+    """That of its only worker, once a thread has started it."""
+    while (found := pool._workers[0].current) is None:
+        time.sleep(0.001)
+    return found.process
+
+
 def test_a_worker_that_dies_fails_its_member_alone() -> None:
     """The members that waited at the dead one go to another; the one that failed can be given
     again.
@@ -139,7 +146,7 @@ def test_a_worker_that_dies_fails_its_member_alone() -> None:
         pool.submit(0)
         pool.submit(1)
         assert not pool.room
-        pool._workers[0].process.kill()
+        process_of(pool).kill()
         found = dict(pool.answers(None))
         assert found == {0: Outcome(State.FAILED, "its process was ended by SIGKILL")}
         pool.submit(0)
@@ -184,7 +191,7 @@ def test_a_member_that_overruns_its_time_is_a_failure(tmp_path: Path) -> None:
     pool = Pool(computing(question, Wanted(timeout=1e-3)), 1, 1e-3)
     try:
         pool.submit(0)
-        os.kill(pool._workers[0].process.pid, signal.SIGSTOP)
+        process_of(pool).send_signal(signal.SIGSTOP)
         assert pool.answers(None) == [
             (0, Outcome(State.FAILED, "the member's time limit of 0.001 s was reached"))
         ]
@@ -340,8 +347,8 @@ def test_workers_end_with_the_process_that_has_started_them(tmp_path: Path) -> N
     code = (
         f"import os, signal, sys, time\nsys.path.append({str(tmp_path)!r})\nfrom sleeper import sleep\n"
         "from ptmcad.workbench.sweeps.pool import Pool\npool = Pool(sleep, 1)\npool.submit(0)\n"
-        "print(pool._workers[0].process.pid, flush=True)\n"
         f"while not os.path.exists({str(tmp_path / 'asleep')!r}):\n    time.sleep(0.01)\n"
+        "print(pool._workers[0].current.process.pid, flush=True)\n"
         "os.kill(os.getpid(), signal.SIGKILL)\n"
     )
     process = subprocess.run(

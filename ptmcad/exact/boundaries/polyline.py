@@ -19,6 +19,7 @@ are simple and as many as over the stack, none of them a corner: then each wall 
 from __future__ import annotations
 
 from collections import Counter
+from collections.abc import Iterator
 from dataclasses import dataclass
 from fractions import Fraction
 
@@ -38,7 +39,7 @@ from ptmcad.algebra.real_roots import (
 )
 from ptmcad.algebra.resultants import Check, nothing
 from ptmcad.answer.regionmap import CriticalValue, RegionMap
-from ptmcad.exact.cad.projection import FibredCurve, by_component, curves_of
+from ptmcad.exact.cad.projection import FibredCurve, by_component, curves_of, lines_of
 from ptmcad.text.balls import exact
 from ptmcad.text.flint_numbers import from_fraction, interval_of, to_fraction
 
@@ -275,6 +276,15 @@ def critical_shares(result: RegionMap) -> list[Span]:
     samples = [from_fraction(s.sample) for s in result.stacks]
     ends = [_enclosed(v, samples[k], samples[k + 1]) for k, v in enumerate(result.critical_values)]
     return [(to_share(root.low, base), to_share(root.high, base)) for root in ends]
+
+
+def lines_across(result: RegionMap) -> Iterator[tuple[int, int]]:
+    """The components that are lines across the base, each with the critical values that it is at."""
+    for component, polynomial in lines_of(result.components, result.base).items():
+        own = [int(c) for c in polynomial.coeffs()]
+        for k, value in enumerate(result.critical_values):
+            if list(value.polynomial) in (own, [-c for c in own]):
+                yield component, k
 
 
 def _enclosed(value: CriticalValue, before: fmpq, after: fmpq) -> RealRoot:

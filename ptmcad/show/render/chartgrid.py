@@ -11,7 +11,7 @@ import math
 import warnings
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from typing import Any
 
@@ -20,104 +20,126 @@ from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
 
 from ptmcad.answer.family import FamilyMap
+from ptmcad.answer.regionmap import RegionMap
 from ptmcad.errors import ConfigError
-from ptmcad.show.render.axes import Dress, dress, symbol
+from ptmcad.show.render.axes import dress, symbol
 from ptmcad.show.render.colours import INK, STRONG, THIN, Fill, Paint, paint_of
-from ptmcad.show.render.fitting import MIN_SIDE
-from ptmcad.show.render.inches import wrapped, write_lines
+from ptmcad.show.render.fitting import MIN_SIDE, dressed
+from ptmcad.show.render.inches import few, wrapped, write_lines
 from ptmcad.show.render.legend import (
     Entry,
     Type,
     count_entries,
-    draw_legend,
     draw_rows,
     head_of,
     hidden_entries,
     in_rows,
     thin_entry,
 )
-from ptmcad.show.render.outline import Shapes, shapes
+from ptmcad.show.render.outline import shapes
 from ptmcad.show.render.painting import paint_map
 from ptmcad.show.render.printing import settings
-from ptmcad.show.render.slivers import Arrow, arrows_of, draw_arrows, seen_thin_walls
-from ptmcad.show.style import MIN_FONT, LegendPlace, PictureStyle, Size
+from ptmcad.show.render.slivers import arrows_of, draw_arrows, seen_thin_walls
+from ptmcad.show.render.view import Shapes
+from ptmcad.show.style import LegendPlace, PictureStyle, Size
 from ptmcad.text.numerals import shortest_text
 
 LINE = 1.35
 """Between lines, in sizes of their type."""
+_MAX_HEAD = 3
+"""Lines above a chart."""
 
 
 @dataclass(frozen=True, slots=True)
-class Panel:
-    """A chart with what stands above and below it.
+class Chart:
+    """A map with what stands above it.
 
     Attributes
     ----------
+    names : of regions that have an arrow where they are too thin to be seen, as of `arrows_of`; None
+        for their counts.
     outlined : regions that are seen however narrow they are, with what rims them.
     """
 
     seen: Shapes
     paint: Paint
-    head: Sequence[str]
-    legend: Sequence[Entry] = ()
-    outlined: Mapping[int, Fill] | None = None
-    arrows: Sequence[Arrow] = ()
+    head: str
+    names: Sequence[str] | None = None
+    outlined: Mapping[int, Fill] = field(default_factory=dict)
 
 
-def draw_panels(
-    figure: Figure,
-    panels: Sequence[Panel],
-    columns: int,
-    ends: tuple[float, float],
-    style: PictureStyle,
-    shared: bool = True,
-) -> None:
-    """Charts in rows from above, with their heads and legends.
+@dataclass(frozen=True, slots=True)
+class Page:
+    """What charts have in common: title, description and legend in one, and their number in a row.
 
-    Parameters
+    Attributes
     ----------
-    ends : inches of the page's head and foot.
-    shared : whether charts have one legend, and numbers and names stand at the outer ones alone.
+    wide, tall : inches of the page; None for as many as it needs.
+    side : inches of a chart in 9 points, where these are so many.
+    """
+
+    title: str
+    words: str
+    legend: Sequence[Entry]
+    columns: int
+    wide: float | None
+    tall: float | None
+    side: float
+
+
+def grid_figure(charts: Sequence[Chart], page: Page, dpi: int, style: PictureStyle) -> Figure:
+    """Charts in rows from above, with numbers and names at the outer ones alone.
 
     Raises
     ------
     ConfigError
-        When the page leaves too little to the charts.
+        When they do not fit into the style's size.
     """
-    font, type = style.base_font, Type.of(style)
-    how = Dress(max(MIN_FONT, 0.95 * font), 1.05 * font, (4, 5), scale=font / 9)
-    what, look = "three maps with their legends do", {"fontweight": "bold"}
-    if shared:
-        how = Dress(max(MIN_FONT, 0.85 * font), 0.95 * font, (4, 4), scale=font / 9)
-        what, look = f"{len(panels)} maps do" if len(panels) > 1 else "the map does", {}
-    places: Any = figure.subplots(math.ceil(len(panels) / columns), columns, squeeze=False).flat
-    for number, (axes, panel) in enumerate(zip(places, panels, strict=False)):
-        paint_map(axes, panel.seen, f"{number}-", panel.paint)
-        view = panel.seen.view
-        dress(axes, panel.seen.result.slice, view.x, view.y, how)
-        draw_arrows(axes, panel.arrows, how.scale)
-        for region, fill in (panel.outlined or {}).items():
-            rims = [np.vstack([rim, rim[:1]]) for rim in panel.seen.polygons(region)]
-            axes.add_artist(
-                LineCollection(
-                    rims, transform=axes.transAxes, colors=fill.face, linewidths=0.1 * type.head,
-                    joinstyle="round", zorder=4, gid=f"change-{region}",
-                )
-            )  # fmt: skip
-        if shared and number % columns:
-            axes.set_ylabel("")
-            axes.tick_params(axis="y", labelleft=False)
-        if shared and number + columns < len(panels):
-            axes.set_xlabel("")
-            axes.tick_params(axis="x", labelbottom=False)
-        axes.set_title("\n".join(panel.head), loc="left", fontsize=type.head, color=INK, **look)
-    for axes in places[len(panels) :]:
-        axes.remove()
-    lay_out(figure, *ends, what, MIN_SIDE * font / 72 * (0.5 if shared else 1.0))
-    wide = float(figure.get_size_inches()[0])
-    for axes, panel in zip(places, panels, strict=False):
-        left = axes.get_position().x0 * wide
-        draw_legend(figure, panel.legend, left, ends[1] - 0.1, type)
+    font, type, columns = style.base_font, Type.of(style), page.columns
+    scale, rows = font / 9, math.ceil(len(charts) / columns)
+    wide = page.wide or (0.5 + columns * (page.side + 0.2)) * scale
+    side = (wide - 0.5 * scale) / columns - 0.2 * scale
+    how = dressed(font, (side, side))
+    with settings(style):
+        marks = [arrows_of(c.seen, (side, side), dpi, type.detail, c.names) for c in charts]
+        thin = any(seen_thin_walls(c.seen, (72 * side, 72 * side)) for c in charts)
+        lines = [Entry((" ".join(thin_entry().lines),), THIN)] if thin else []
+        legend = [*page.legend, *lines, *hidden_entries(sum(hidden for _, hidden in marks))]
+        head, foot, draw = head_and_foot(page.title, legend, wide, style)
+        heads = [few(wrapped(c.head, side, type.head), _MAX_HEAD) for c in charts]
+        row = side + LINE * type.head / 72 * max(map(len, heads)) + 0.1 * scale
+        named = 1 + (len(charts) > columns and len(charts) % columns > 0)
+        tall = page.tall or head + foot + rows * row + 0.45 * scale * named
+        figure = Figure(figsize=(wide, tall), dpi=dpi, facecolor="white", layout="constrained")
+        places: Any = figure.subplots(rows, columns, squeeze=False).flat
+        for number, (axes, chart) in enumerate(zip(places, charts, strict=False)):
+            paint = replace(chart.paint, thin_walls=thin and chart.paint.thin_walls)
+            paint_map(axes, chart.seen, f"{number}-", paint)
+            dress(axes, chart.seen.result.slice, chart.seen.view.x, chart.seen.view.y, how)
+            draw_arrows(axes, marks[number][0], how.scale)
+            outlines = chart.seen.polygons() if chart.outlined else []
+            for region, fill in chart.outlined.items():
+                rims = [np.vstack([rim, rim[:1]]) for rim in outlines[region]]
+                axes.add_artist(
+                    LineCollection(
+                        rims, transform=axes.transAxes, colors=fill.face, linewidths=0.1 * type.head,
+                        joinstyle="round", zorder=4, gid=f"change-{region}",
+                    )
+                )  # fmt: skip
+            if number % columns:
+                axes.set_ylabel("")
+                axes.tick_params(axis="y", labelleft=False)
+            if number + columns < len(charts):
+                axes.set_xlabel("")
+                axes.tick_params(axis="x", labelbottom=False)
+            axes.set_title("\n".join(heads[number]), loc="left", fontsize=type.head, color=INK)
+        for axes in places[len(charts) :]:
+            axes.remove()
+        what = f"{len(charts)} maps do" if len(charts) > 1 else "the map does"
+        lay_out(figure, head, foot, what, 0.5 * MIN_SIDE * font / 72)
+        draw(figure)
+    figure.set_label(f"{page.title}\n{page.words}")
+    return figure
 
 
 def lay_out(figure: Figure, head: float, foot: float, what: str, least: float) -> None:
@@ -133,7 +155,9 @@ def lay_out(figure: Figure, head: float, foot: float, what: str, least: float) -
     side, room, sides = 0.06 / wide, tall - head - foot, (0.0, 0.0)
     if room > least:
         engine: Any = figure.get_layout_engine()
-        engine.set(rect=(side, foot / tall, 1 - 2 * side, room / tall), w_pad=0.03, h_pad=0.03)
+        engine.set(
+            rect=(side, foot / tall, 1 - 2 * side, room / tall), w_pad=0.03, h_pad=0.03, wspace=0.06
+        )
         with warnings.catch_warnings():
             warnings.simplefilter("error", UserWarning)
             with suppress(UserWarning):  # that no room is left
@@ -192,23 +216,15 @@ def in_words(family: FamilyMap) -> str:
     )
 
 
-def family_entries(
-    family: FamilyMap, paint: Paint, thin: bool = False, hidden: int = 0
-) -> list[Entry]:
-    """The legend: a fill for each count that some member has.
-
-    Parameters
-    ----------
-    thin : whether curves at which the count does not change are seen.
-    hidden : number of regions that are not seen and have no label.
+def map_entries(paint: Paint, *results: RegionMap) -> list[Entry]:
+    """The legend of some maps: a fill for each count that one of them has, and the line between two
+    counts.
     """
-    head = head_of(family.members[0].slice)
-    legend = [Entry(head, strong=True, heads=len(head)), *count_entries(paint, *family.members)]
-    if any(result.cover is None and len(result.regions) > 1 for result in family.members):
+    head = head_of(results[0].slice)
+    legend = [Entry(head, strong=True, heads=len(head)), *count_entries(paint, *results)]
+    if any(result.cover is None and len(result.regions) > 1 for result in results):
         legend.append(Entry(("the count changes",), STRONG))
-    if thin:
-        legend.append(Entry((" ".join(thin_entry().lines),), THIN))
-    return legend + hidden_entries(hidden)
+    return legend
 
 
 def value_text(family: FamilyMap, value: Fraction) -> str:
@@ -224,31 +240,12 @@ def multiples_figure(family: FamilyMap, dpi: int, style: PictureStyle) -> Figure
     ConfigError
         When it does not fit into the style's size.
     """
-    font = style.base_font
-    small, scale = max(MIN_FONT, 0.85 * font), font / 9
-    seen = [shapes(result) for result in family.members]
-    columns = _columns(len(seen), style.size)
-    rows = math.ceil(len(seen) / columns)
-    wide = style.size[0] if style.size is not None else (0.5 + columns * (SIDE + 0.2)) * scale
-    side = (wide - 0.5 * scale) / columns - 0.2 * scale
-    with settings(style):
-        marks = [arrows_of(shape, (side, side), dpi, small) for shape in seen]
-        thin = any(seen_thin_walls(shape, (72 * side, 72 * side)) for shape in seen)
-        paint = replace(paint_of(style, *family.members), thin_walls=thin)
-        legend = family_entries(family, paint, thin, sum(hidden for _, hidden in marks))
-        head, foot, draw = head_and_foot(title_of(family), legend, wide, style)
-        named = 1 + (len(seen) > columns and len(seen) % columns > 0)
-        height = head + foot + rows * (side + 0.25 * scale) + 0.45 * scale * named
-        size = style.size or (wide, height)
-        figure = Figure(figsize=size, dpi=dpi, facecolor="white", layout="constrained")
-        panels = [
-            Panel(shape, paint, (value_text(family, value),), arrows=found)
-            for shape, value, (found, _) in zip(seen, family.values, marks, strict=True)
-        ]
-        draw_panels(figure, panels, columns, (head, foot), style)
-        draw(figure)
-    figure.set_label(f"{title_of(family)}\n{in_words(family)}")
-    return figure
+    paint = paint_of(style, *family.members)
+    charts = [Chart(shapes(result), paint, value_text(family, value)) for value, result in family]
+    columns, (wide, tall) = _columns(len(charts), style.size), style.size or (None, None)
+    legend = map_entries(paint, *family.members)
+    page = Page(title_of(family), in_words(family), legend, columns, wide, tall, SIDE)
+    return grid_figure(charts, page, dpi, style)
 
 
 def _columns(number: int, size: Size | None) -> int:

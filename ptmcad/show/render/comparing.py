@@ -1,4 +1,4 @@
-"""Two maps and their difference side by side, each with its own legend below.
+"""Two maps and their difference side by side, with one legend below.
 
 Guarantee: every area shown is certified; changes of count are distinguished by colour or hatch.
 """
@@ -6,26 +6,21 @@ Guarantee: every area shown is certified; changes of count are distinguished by 
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Iterable, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from fractions import Fraction
-from typing import Any
 
 from matplotlib.figure import Figure
 
 from ptmcad.answer.comparison import Bounds, Change, Comparison
 from ptmcad.answer.regionmap import RegionMap
 from ptmcad.show.render.axes import symbol
-from ptmcad.show.render.chartgrid import LINE, Panel, draw_panels
-from ptmcad.show.render.colours import GREYS, HATCHES, Fill, Paint, paint_of, undetermined_fill
-from ptmcad.show.render.fitting import rewrapped
-from ptmcad.show.render.inches import few, wrapped
-from ptmcad.show.render.legend import Entry, Type, entries, hidden_entries
+from ptmcad.show.render.chartgrid import Chart, Page, grid_figure, map_entries
+from ptmcad.show.render.colours import GREYS, HATCHES, Fill, paint_of, undetermined_fill
+from ptmcad.show.render.legend import Entry
 from ptmcad.show.render.mappicture import whole_title
 from ptmcad.show.render.outline import shapes
-from ptmcad.show.render.printing import settings
-from ptmcad.show.render.slivers import arrows_of, seen_thin_walls
-from ptmcad.show.style import LegendPlace, PictureStyle, Size
+from ptmcad.show.style import PictureStyle
 from ptmcad.show.table import area_text, count_text
 from ptmcad.text.numerals import Numbers, percent, share_text, shortest_text
 
@@ -34,7 +29,6 @@ SIDE = 2.7
 CHANGES = ("#d55e00", "#0072b2", "#cc79a7", "#009e73", "#f0e442")
 """Of Okabe & Ito, none of which a count has."""
 _EQUAL = Fill("#ffffff")
-_MAX_HEAD = 3
 LETTERS = ("A", "B")
 """Of the two maps, so that a change of counts has a direction: from A to B."""
 _MAX_NAMES = 3
@@ -49,8 +43,7 @@ def traced(result: RegionMap) -> None:
         When the map contradicts itself.
     """
     seen = shapes(result)
-    for number in range(len(result.regions)):
-        deque(seen.polygons(number), maxlen=0)
+    seen.polygons()
     deque(seen.walls(), maxlen=0)
 
 
@@ -99,64 +92,39 @@ def comparison_figure(comparison: Comparison, dpi: int, style: PictureStyle) -> 
     ConfigError
         When it does not fit into the style's size.
     """
-    em = style.base_font / 72
-    width = style.widest if style.widest is not None else 3 * (SIDE * style.base_font / 9 + 6 * em)
-    side, given = width / 3 - 5.5 * em, style.size if style.wide is None else None
-    with settings(style):
-        panels = _panels(comparison, style, (side, given[1] / 2 if given else side), dpi)
-        foot = max(Type.of(style).height(panel.legend) for panel in panels) + 0.2
-        heads = LINE * em * max(len(panel.head) for panel in panels)
-        size = given or (width, side + foot + heads + 4.5 * em)
-        figure = Figure(figsize=size, dpi=dpi, facecolor="white", layout="constrained")
-        draw_panels(figure, panels, 3, (0.0, foot), style, shared=False)
-    title = f"{whole_title(comparison.first)} and {whole_title(comparison.second)}"
-    figure.set_label(f"{title}\n{' '.join(difference_words(comparison))}")
-    return figure
-
-
-def _panels(comparison: Comparison, style: PictureStyle, sides: Size, dpi: int) -> list[Panel]:
-    """The two maps and the difference, with text as wide as they are."""
-    type, side = Type.of(style), sides[0]
-
-    def panel(
-        title: str, legend: Iterable[Entry], names: Sequence[str] | None, **drawn: Any
-    ) -> Panel:
-        marks, hidden = arrows_of(drawn["seen"], sides, dpi, type.detail, names)
-        below = [rewrapped(entry, side, type) for entry in (*legend, *hidden_entries(hidden))]
-        if style.legend is LegendPlace.NONE:
-            below = []
-        head = few(wrapped(title, side, type.head, True), _MAX_HEAD)
-        return Panel(head=head, legend=below, arrows=marks, **drawn)
-
-    found = []
-    pair = (comparison.first, comparison.second)
-    for letter, own, result in zip(LETTERS, own_words(*pair), pair, strict=True):
-        seen = shapes(result)
-        thin = seen_thin_walls(seen, (72 * sides[0], 72 * sides[1]))
-        paint = replace(paint_of(style, result), thin_walls=thin)
-        title = whole_title(result) if style.title is None else own
-        legend = entries(result, thin, paint)
-        named = f"{letter}: {title}" if title else letter
-        found.append(panel(named, legend, None, seen=seen, paint=paint))
-    fills = _fills(comparison, style)
-    decomposition = comparison.decomposition
-    of_cells = {
-        region.cells: fills.get(n, _EQUAL) for n, region in enumerate(decomposition.regions)
-    }
-    strong = style.strong / 4
-    bare = Paint(
-        lambda region: of_cells[region.cells],
-        undetermined_fill(style.palette),
-        strong,
-        strong,
-        thin_walls=False,
+    pair, changes = (comparison.first, comparison.second), comparison.changes
+    paint, fills = paint_of(style, *pair), _fills(comparison, style)
+    regions = comparison.decomposition.regions
+    of_cells = {region.cells: fills.get(n, _EQUAL) for n, region in enumerate(regions)}
+    bare = replace(
+        paint, fill=lambda region: of_cells[region.cells], strong=style.strong / 4, thin_walls=False
     )
-    names = [""] * len(decomposition.regions)
-    for change in comparison.changes:
-        names[change.region] = change_text(comparison, change)
-    title, changes = f"Difference, {' → '.join(LETTERS)}", _differences(comparison, style)
-    whole = shapes(decomposition)
-    return [*found, panel(title, changes, names, seen=whole, paint=bare, outlined=fills)]
+    heads = [
+        f"{letter}: {own}" if own else letter
+        for letter, own in zip(LETTERS, own_words(*pair), strict=True)
+    ]
+    charts = [Chart(shapes(result), paint, head) for result, head in zip(pair, heads, strict=True)]
+    names = {change.region: change_text(comparison, change) for change in changes}
+    charts.append(
+        Chart(
+            shapes(comparison.decomposition),
+            bare,
+            f"Difference, {' → '.join(LETTERS)}",
+            [names.get(n, "") for n in range(len(regions))],
+            fills,
+        )
+    )
+    titles = dict.fromkeys(map(whole_title, pair))
+    page = Page(
+        " and ".join(titles),
+        " ".join(difference_words(comparison)),
+        [*map_entries(paint, *pair), *_differences(comparison, fills, style)],
+        len(charts),
+        style.widest,
+        style.size[1] if style.size is not None and style.wide is None else None,
+        SIDE,
+    )
+    return grid_figure(charts, page, dpi, style)
 
 
 def own_words(first: RegionMap, second: RegionMap) -> tuple[str, str]:
@@ -201,24 +169,20 @@ def _fills(comparison: Comparison, style: PictureStyle) -> dict[int, Fill]:
     return found
 
 
-def _differences(comparison: Comparison, style: PictureStyle) -> list[Entry]:
-    fills, open_part = _fills(comparison, style), _undetermined(comparison)
+def _differences(
+    comparison: Comparison, fills: Mapping[int, Fill], style: PictureStyle
+) -> list[Entry]:
+    open_part = _undetermined(comparison)
+    where = "where both are determined" if open_part else "everywhere"
+    head = f"The counts are the same {where}"
     if comparison.changes:
         area = _area(comparison, comparison.area)
-        legend = [Entry((f"Counts differ on {_share(comparison)}", f"area {area}"), strong=True)]
-    else:
-        where = "where both are determined" if open_part else "everywhere"
-        legend = [Entry(("The counts are the same", where), strong=True)]
+        head = f"Counts differ on {_share(comparison)}, area {area}"
+    legend = [Entry((head,), strong=True)]
     for change in comparison.changes:
-        area = _area(comparison, change.area)
-        legend.append(
-            Entry((change_text(comparison, change), f"area {area}"), fills[change.region])
-        )
+        words = f"{change_text(comparison, change)}, area {_area(comparison, change.area)}"
+        legend.append(Entry((words,), fills[change.region]))
     if open_part:
-        legend.append(
-            Entry(
-                (f"undetermined {open_part}", "by one map or both"),
-                undetermined_fill(style.palette),
-            )
-        )
+        words = f"undetermined {open_part}, by one map or both"
+        legend.append(Entry((words,), undetermined_fill(style.palette)))
     return legend

@@ -11,7 +11,7 @@ cross. Nothing but pictures may be decided by an outline.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from fractions import Fraction
 
@@ -19,21 +19,19 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ptmcad.answer.regionmap import RegionMap
+from ptmcad.answer.remembered import remembered
 from ptmcad.cover import components
 from ptmcad.cover.complement import Components, outlines
-from ptmcad.cover.subdivision import FREE
 from ptmcad.show.render.polylines import simplified_polygon
-from ptmcad.show.render.view import CellShape, Floats, View, WallShape, remembered
+from ptmcad.show.render.view import FAR, CellShape, Floats, Shapes, View
 
 TOLERANCE = 1.5e-4
 """Of the view's side; 0.05 pt where the side is 4.6 inches."""
-_FAR = (-1.0, 2.0)
-"""Positions beyond are moved there: what is out of the view has no shape."""
 
 
 @dataclass(frozen=True, slots=True)
-class CoverOutline:
-    """All that a picture of a view needs.
+class CoverOutline(Shapes):
+    """The shapes of a certified map.
 
     Attributes
     ----------
@@ -41,8 +39,6 @@ class CoverOutline:
     region_at : region of each component of the complement, -1 for those without a cell.
     """
 
-    result: RegionMap
-    view: View
     complement: Components
     corners: tuple[tuple[NDArray[np.int64], ...], ...]
     region_at: NDArray[np.int64]
@@ -50,12 +46,6 @@ class CoverOutline:
     def in_view(self, view: View) -> CoverOutline:
         """The same map in another view."""
         return replace(self, view=view)
-
-    def polygons(self, region: int, tolerance: float = 0.0) -> Iterator[Floats]:
-        """The region's outlines; those around holes turn the other way."""
-        found = _polygons(self, tolerance)
-        for cell in self.result.regions[region].cells:
-            yield from found[cell]
 
     def cells(self, tolerance: float = 0.0) -> Iterator[CellShape]:
         """Every cell's outlines; with a tolerance those that collapse are among them, as a line or
@@ -65,39 +55,22 @@ class CoverOutline:
             if found:
                 yield cell, list(found)
 
-    def walls(self, tolerance: float = 0.0) -> Iterator[WallShape]:
-        """None: a certified map knows no curve, only what encloses the curves."""
-        return iter(())
-
-    def edges(self) -> Iterator[Floats]:
-        """The outlines of all cells as closed lines: between two of them lies what is undetermined."""
-        for _, polygons in self.cells():
-            for polygon in polygons:
-                yield np.concatenate([polygon, polygon[:1]])
-
     def raster(self, columns: int, rows: int) -> NDArray[np.int64]:
         """The region just right of and above each pixel's centre, shape (rows, columns), from the
         bottom; -1: none.
         """
-        tree = self.complement.subdivision
-        steps = tree.steps
-        views = zip(
-            self.result.slice.axes, (self.view.x, self.view.y), (columns, rows), strict=True
-        )
+        steps = self.complement.cover.steps
         x, y = (
             np.array(
                 [int(start + (k + Fraction(1, 2)) * step) for k in range(n)], dtype=np.int64
             ).clip(0, steps - 1)
-            for axis, (low, high), n in views
+            for axis, (low, high), n in zip(
+                self.result.slice.axes, (self.view.x, self.view.y), (columns, rows), strict=True
+            )
             for start, step in [(axis.share(low) * steps, (high - low) / axis.width * steps / n)]
         )
-        leaf = tree.leaves_right_above(np.tile(x, rows), np.repeat(y, columns))
-        free = tree.state[leaf] == FREE
-        image = np.full(
-            len(leaf), -1, dtype=np.int64
-        )  # a covered leaf's owner is a cluster, not a component
-        image[free] = self.region_at[self.complement.owner[leaf[free]]]
-        return image.reshape(rows, columns)
+        image: NDArray[np.int64] = self.region_at[self.complement.raster(x, y)]
+        return image
 
 
 @remembered(16)
@@ -115,7 +88,7 @@ def _polygons(seen: CoverOutline, tolerance: float) -> tuple[tuple[Floats, ...],
     if not corners:
         return tuple(map(tuple, found))
     sizes = np.array([len(polygon) for polygon in corners])
-    points = np.clip(_in_view(np.concatenate(corners), seen), *_FAR)
+    points = np.clip(_in_view(np.concatenate(corners), seen), *FAR)
     starts = np.cumsum(sizes) - sizes
     there = _meets_view(np.minimum.reduceat(points, starts), np.maximum.reduceat(points, starts))
     points, sizes, cells = points[np.repeat(there, sizes)], sizes[there], cells[there]
@@ -159,26 +132,10 @@ def cover_outline(result: RegionMap) -> CoverOutline:
     """
     assert result.cover is not None  # others have no such outline
     complement = components(result.cover)
-    number_of = _components_of(result, complement)
+    view = View.whole(result)
+    number_of = complement.numbered((cell.sample for cell in result.cells), (view.x, view.y))
     region_at = np.full(len(complement.areas) + 1, -1, dtype=np.int64)
-    for cell, number in number_of.items():
+    for number, cell in number_of.items():
         region_at[number] = result.cells[cell].region
-    traced = outlines(complement, list(number_of.values()))
-    return CoverOutline(result, View.whole(result), complement, traced, region_at)
-
-
-def _components_of(result: RegionMap, complement: Components) -> Mapping[int, int]:
-    """For each cell the component that holds its sample."""
-    found: dict[int, int] = {}
-    for number, cell in enumerate(result.cells):
-        place = [
-            axis.share(value) * complement.cover.steps
-            for axis, value in zip(result.slice.axes, cell.sample, strict=True)
-        ]
-        component = complement.locate(*place)
-        if component is None or component in found.values():
-            raise ValueError(
-                f"the sample of cell {number} is in the cover, or in the component of another cell"
-            )
-        found[number] = component
-    return found
+    traced = outlines(complement, list(number_of))
+    return CoverOutline(result, view, complement, traced, region_at)

@@ -8,9 +8,9 @@ answer.
 
 from __future__ import annotations
 
-import textwrap
 from typing import Any
 
+import numpy as np
 from matplotlib.cm import ScalarMappable
 from matplotlib.collections import PatchCollection
 from matplotlib.colors import Normalize
@@ -21,45 +21,29 @@ from ptmcad.answer.design import BestDesign
 from ptmcad.show.designtable import design_table, value_text
 from ptmcad.show.render.axes import symbol
 from ptmcad.show.render.colours import INK
-from ptmcad.show.render.inches import write_lines
+from ptmcad.show.render.panels import SIZE, panels, scaled, scaled_axis
 from ptmcad.show.render.printing import settings
-from ptmcad.show.render.rangepicture import (
-    LEFT,
-    RIGHT,
-    SIZE,
-    WIDE,
-    axes_in,
-    figure_of,
-    scaled,
-    scaled_axis,
-)
 
 TALL = 3.6
-BAR = 0.16
-"""Width of a colour bar, in inches."""
-BEST = "#b45f06"
+"""Inches of the panel."""
+BEST, BOUND = "#b45f06", "#377eb8"
 COLOURS = "viridis"
-_COLUMNS = 96
 
 
 def figure_of_design(found: BestDesign) -> Figure:
     """The values over one design parameter, or over the first two, with the bounds and the best
     one.
     """
-    words = [*_words(found), *design_table(found).splitlines()[-2:-1]]
-    lines = [part for line in words for part in textwrap.wrap(line, _COLUMNS)]
-    foot = 0.6 + 0.2 * len(lines)
+    proof = design_table(found).splitlines()[-2].split(maxsplit=1)
+    words = [*_words(found), ": ".join(proof)]
     with settings():
-        figure = figure_of(
-            [_title(found)], (LEFT + WIDE + RIGHT + 0.8, foot + TALL + 0.1), "\n".join(lines)
+        figure, (axes,) = panels(
+            _title(found), "\n".join(words), found.over[0], "", [TALL], notes=words
         )
-        axes = axes_in(figure, (LEFT, foot, WIDE, TALL))
         if len(found.over) == 1:
             _draw_curve(axes, found)
         else:
-            _draw_plane(figure, axes, found, foot)
-        axes.tick_params(labelsize=SIZE)
-        write_lines(figure, (LEFT, 0.2), reversed(lines), SIZE, -0.2, va="baseline")
+            _draw_plane(figure, axes, found)
     return figure
 
 
@@ -84,61 +68,53 @@ def _words(found: BestDesign) -> list[str]:
 
 def _draw_curve(axes: Any, found: BestDesign) -> None:
     (over,) = found.over
-    known = sorted((p.at[0], float(p.value)) for p in found.points if p.value is not None)
-    axes.plot(
-        [scaled(at, over) for at, _ in known], [v for _, v in known], ".", color=INK, markersize=3
+    known = sorted(
+        (scaled(p.at[0], over), float(p.value)) for p in found.points if p.value is not None
     )
+    axes.plot(*np.reshape(known, (-1, 2)).T, ".", color=INK, markersize=3)
     for box in found.boxes:
-        low, high = box.ranges[0]
-        axes.plot(
-            [scaled(low, over), scaled(high, over)],
-            [float(box.bound)] * 2,
-            color="#377eb8",
-            linewidth=1.2,
-        )
+        ends = [scaled(end, over) for end in box.ranges[0]]
+        axes.plot(ends, [float(box.bound)] * 2, color=BOUND, linewidth=1.2)
     if found.bound is not None and not found.boxes:
-        axes.axhline(float(found.bound), color="#377eb8", linewidth=0.8, linestyle="--")
+        axes.axhline(float(found.bound), color=BOUND, linewidth=0.8, linestyle="--")
     if found.best is not None and found.value is not None:
         at = scaled(found.best[over.name], over)
-        axes.plot([at], [float(found.value)], "D", color=BEST, fillstyle="none", clip_on=False)
-    scaled_axis(axes.xaxis, over, "")
+        axes.plot(at, float(found.value), "D", color=BEST, fillstyle="none", clip_on=False)
     axes.set_ylabel(_value_name(found), fontsize=SIZE + 2)
 
 
-def _draw_plane(figure: Figure, axes: Any, found: BestDesign, foot: float) -> None:
+def _draw_plane(figure: Figure, axes: Any, found: BestDesign) -> None:
     first, second = found.over[:2]
-    values = [float(p.value) for p in found.points if p.value is not None] + [
-        float(b.bound) for b in found.boxes
+    known = [
+        (scaled(p.at[0], first), scaled(p.at[1], second), float(p.value))
+        for p in found.points
+        if p.value is not None
     ]
+    bounds = [float(box.bound) for box in found.boxes]
+    values = [value for _, _, value in known] + bounds
     if values:
-        norm = Normalize(min(values), max(values) if max(values) > min(values) else min(values) + 1)
-        sides = [
-            [
+        low, high = min(values), max(values)
+        norm = Normalize(low, high if high > low else low + 1)
+        look: dict[str, Any] = {"cmap": COLOURS, "norm": norm}
+        patches = []
+        for box in found.boxes:
+            (a, b), (c, d) = (
                 [scaled(end, axis) for end in ends]
                 for ends, axis in zip(box.ranges, (first, second), strict=False)
-            ]
-            for box in found.boxes
-        ]
-        patches = [Rectangle((a, c), b - a, d - c) for (a, b), (c, d) in sides]
-        boxes = PatchCollection(patches, cmap=COLOURS, norm=norm, edgecolor="white", linewidth=0.3)
-        boxes.set_array([float(box.bound) for box in found.boxes])
+            )
+            patches.append(Rectangle((a, c), b - a, d - c))
+        boxes = PatchCollection(patches, edgecolor="white", linewidth=0.3, **look)
+        boxes.set_array(bounds)
         axes.add_collection(boxes)
-        known = [(p.at, float(p.value)) for p in found.points if p.value is not None]
-        axes.scatter(
-            [scaled(at[0], first) for at, _ in known], [scaled(at[1], second) for at, _ in known],
-            c=[v for _, v in known], cmap=COLOURS, norm=norm, s=9, edgecolors=INK, linewidths=0.3, zorder=3,
-        )  # fmt: skip
-        bar = figure.colorbar(
-            ScalarMappable(norm, COLOURS),
-            cax=axes_in(figure, (LEFT + WIDE + 0.15, foot, BAR, TALL)),
-        )
+        xs, ys, colours = np.reshape(known, (-1, 3)).T
+        axes.scatter(xs, ys, 9, colours, edgecolors=INK, linewidths=0.3, zorder=3, **look)
+        bar = figure.colorbar(ScalarMappable(norm, COLOURS), ax=axes, aspect=23, pad=0.02)
         bar.set_label(_value_name(found), fontsize=SIZE + 1)
         bar.ax.tick_params(labelsize=SIZE)
     if found.best is not None:
-        place = [scaled(found.best[axis.name], axis) for axis in (first, second)]
-        axes.plot(*[[x] for x in place], "D", color=BEST, markersize=8, markeredgewidth=1.6, fillstyle="none",
+        x, y = (scaled(found.best[axis.name], axis) for axis in (first, second))
+        axes.plot(x, y, "D", color=BEST, markersize=8, markeredgewidth=1.6, fillstyle="none",
                   clip_on=False, zorder=4)  # fmt: skip
-    scaled_axis(axes.xaxis, first, "")
     scaled_axis(axes.yaxis, second, "")
 
 

@@ -151,24 +151,19 @@ def _fill(
     levels = contour_lines(axes, field, extent, number)
     for found in filter(None, levels.values()):
         axes.add_collection(LineCollection(found, gid="contours", **lines), autolim=False)
-    jumps = [] if field.jumps is None else pixel_edges(*field.jumps, extent)
-    for look in _edge(style) if jumps else ():
-        drawn = LineCollection(jumps, gid="jumps", capstyle="projecting", zorder=2.5, **look)
-        axes.add_collection(drawn, autolim=False)
+    if field.jumps is not None:
+        jumps = pixel_edges(*field.jumps, extent)
+        for look in _edge(style):
+            drawn = LineCollection(jumps, gid="jumps", capstyle="projecting", zorder=2.5, **look)
+            axes.add_collection(drawn, autolim=False)
     bar = figure.colorbar(image, ax=axes, aspect=23, fraction=0.06, pad=0.03)
     font = max(MIN_FONT, style.base_font)
     if levels:
         # the lines' values are among those at the bar, as many as there is room for
         most = 0.6 * 72 * float(figure.get_size_inches()[1]) / (1.3 * font)
         bar.set_ticks(list(levels)[:: 1 + int(len(levels) / most)])
-        bar.ax.hlines(
-            [level for level, found in levels.items() if found],
-            0,
-            1,
-            transform=bar.ax.get_yaxis_transform(),
-            gid="levels",
-            **lines,
-        )
+        shown = [level for level, found in levels.items() if found]
+        bar.ax.hlines(shown, *bar.ax.get_xlim(), gid="levels", **lines)
     bar.ax.tick_params(labelsize=font, width=0.8 * style.line_scale)
     bar.ax.yaxis.get_offset_text().set_fontsize(font)
     bar.outline.set_linewidth(0.8 * style.line_scale)
@@ -260,53 +255,44 @@ def contour_lines(
     """About so many lines of equal value, at round values: polylines in the units of the extent, by
     their values.
 
-    A value whose lines are all too short has none.
+    A value whose lines are all too short has none. Lines end a pixel before the edge of a region.
 
     Parameters
     ----------
     axes : matplotlib's, in which they are traced; nothing is left there.
     extent : left, right, bottom, top of the field.
     """
-    known = field.known
-    if number < 1 or min(field.values.shape) < 2 or not known.size or not known.min() < known.max():
+    values = np.where(_before_an_edge(field), np.nan, field.values)
+    known = values[~np.isnan(values)]
+    if number < 1 or min(values.shape) < 2 or not known.size:
         return {}
-    levels = [v for v in MaxNLocator(nbins=number + 1).tick_values(known.min(), known.max())
-              if known.min() < v < known.max()]  # fmt: skip
+    low, high = known.min(), known.max()
+    levels = [v for v in MaxNLocator(number + 1).tick_values(low, high) if low < v < high]
     if not levels:
         return {}
-    columns, rows = _sides(field.values.shape, extent)
-    pixel = np.array([columns[1] - columns[0], rows[1] - rows[0]])
-    whole = np.where(_before_a_jump(field), np.nan, field.values)
-    found: dict[float, list[Floats]] = {float(level): [] for level in levels}
-    for region in np.unique(field.region[field.region >= 0]):
-        own = np.where(field.region == region, whole, np.nan)
-        if (
-            (~np.isnan(own)).sum() > 3
-            and np.nanmin(own) < levels[-1]
-            and np.nanmax(own) > levels[0]
-        ):
-            traced = axes.contour(
-                columns[:-1] + pixel[0] / 2, rows[:-1] + pixel[1] / 2, own, levels=levels
-            )
-            for level, path in zip(traced.levels, traced.get_paths(), strict=True):
-                lines = [np.asarray(line) for line in path.to_polygons(closed_only=False)]
-                found[float(level)].extend(line for line in lines if _is_long(line / pixel))
-            traced.remove()
-    return dict(sorted(found.items()))
+    centres = [(side[1:] + side[:-1]) / 2 for side in _sides(values.shape, extent)]
+    pixel = [side[1] - side[0] for side in centres]
+    traced = axes.contour(*centres, values, levels=levels)
+    found = {}
+    for level, path in zip(levels, traced.get_paths(), strict=True):
+        lines = map(np.asarray, path.to_polygons(closed_only=False))
+        found[float(level)] = [line for line in lines if _is_long(line / pixel)]
+    traced.remove()
+    return found
 
 
-def _before_a_jump(field: Field) -> Flags:
-    """The pixels whose neighbour at the right or above is of another branch, or has its angle written
-    with another turn.
+def _before_an_edge(field: Field) -> Flags:
+    """The pixels whose neighbour at the right or above is of another region or branch, or has its
+    angle written with another turn.
     """
     found = np.zeros(field.values.shape, np.bool_)
-    right, above = found[:, :-1], found[:-1]
-    if field.jumps is not None:
-        right |= field.jumps[0]
-        above |= field.jumps[1]
-    if field.quantity.startswith("angle:"):
-        right |= np.abs(np.diff(field.values, axis=1)) > HALF_TURN
-        above |= np.abs(np.diff(field.values, axis=0)) > HALF_TURN
+    for axis, here in ((1, np.s_[:, :-1]), (0, np.s_[:-1])):
+        edge = np.diff(field.region, axis=axis) != 0
+        if field.jumps is not None:
+            edge |= field.jumps[1 - axis]
+        if field.quantity.startswith("angle:"):
+            edge |= np.abs(np.diff(field.values, axis=axis)) > HALF_TURN
+        found[here] |= edge
     return found
 
 

@@ -29,7 +29,7 @@ from ptmcad.show.render.colours import INK, Paint, paint_of
 from ptmcad.show.render.fitting import SIDE, Layout, PageParts, fitted
 from ptmcad.show.render.inches import Box, axes_at, write_lines
 from ptmcad.show.render.legend import Entry, Type, draw_legend, entries, hidden_entries, point_mark
-from ptmcad.show.render.outline import Shapes, shapes
+from ptmcad.show.render.outline import shapes
 from ptmcad.show.render.painting import Overlay, draw_overlay, overlay_entries, paint_map
 from ptmcad.show.render.printing import save, settings
 from ptmcad.show.render.slivers import (
@@ -45,6 +45,7 @@ from ptmcad.show.render.slivers import (
     unstable_zooms,
     zooms,
 )
+from ptmcad.show.render.view import Shapes
 from ptmcad.show.style import DEFAULT, LegendPlace, PictureStyle, Size
 from ptmcad.show.table import area_text, areas_are_known, count_text, region_area
 

@@ -14,26 +14,26 @@ from typing import Any
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Circle, FancyArrowPatch, Polygon, Rectangle
+from matplotlib.transforms import Affine2D
 
 from ptmcad.model import Mechanism, Support
 from ptmcad.show.linedrawing import approximate_places, fitted
 from ptmcad.show.render.colours import INK
 from ptmcad.show.render.inches import axes_at
 from ptmcad.show.render.labels import Position
-from ptmcad.show.render.legend import SWATCH, Mark, line_mark
+from ptmcad.show.render.legend import SWATCH, Mark
 from ptmcad.show.render.printing import settings
 from ptmcad.show.render.sketch import (
-    AMPLITUDE,
     BAR_WIDTHS,
     GROUND,
     LABEL_SIZE,
-    MANY_BARS,
     PIN,
     SLIDER,
     SPIRAL,
     SUPPORT,
     Sketch,
     bar_width,
+    coil,
     sketched,
 )
 from ptmcad.show.spiral import spiral
@@ -53,35 +53,31 @@ PALE = {
 
 def draw_sketch(axes: Any, seen: Sketch, style: SketchColours, prefix: str) -> None:
     """Draw a sketch into axes of which a unit is a point."""
-    _supports(axes, seen, style, prefix)
-    few = len(seen.bars) <= len(BAR_WIDTHS)
-    for number, ((start, end), names) in enumerate(
-        zip(seen.bars, seen.mechanism.bars, strict=True)
-    ):
-        kind = number if few else 0
-        width = bar_width(seen.mechanism, number)
-        _line(
-            axes,
-            (start, end),
-            style[f"bar-{kind}"],
-            width,
-            f"{prefix}bar-{''.join(names)}",
-            2 + kind,
-        )
+    mechanism, parts = seen.mechanism, list[Any]()
+    for number, ends in enumerate(seen.rails, 1):
+        gid = f"{prefix}base" + (f"-{number}" if number > 1 else "")
+        parts += [_line(ends, style["base"], 1.8, 1, gid), _line(ends, "white", 0.7, 1.1)]
+    for name, support in mechanism.supports.items():
+        parts += _support(support, seen.nodes[name], style["base"])
+    for number, (ends, names) in enumerate(zip(seen.bars, mechanism.bars, strict=True)):
+        kind = number if len(seen.bars) <= len(BAR_WIDTHS) else 0
+        width, gid = bar_width(mechanism, number), f"{prefix}bar-{''.join(names)}"
+        parts.append(_line(ends, style[f"bar-{kind}"], width, 2 + kind, gid))
     for name, points in seen.coils.items():
-        _line(axes, points, "white", 2.4, "", 4)
-        _line(axes, points, style["spring"], 0.95, f"{prefix}{name}", 5)
-    for name, (x, y) in seen.nodes.items():
-        axes.add_artist(_pin(x, y, style["base"], f"{prefix}node-{name}"))
+        parts.append(_line(points, "white", 2.4, 4))
+        parts.append(_line(points, style["spring"], 0.95, 5, f"{prefix}{name}"))
+    parts += [_pin(at, style["base"], f"{prefix}node-{name}") for name, at in seen.nodes.items()]
     for name, start, end in seen.arrows:
-        axes.add_artist(_arrow(start, end, style["load"], f"{prefix}load-{name}"))
+        parts.append(_arrow((start, end), style["load"], f"{prefix}load-{name}"))
     for placed in seen.labels:
         if placed.leader is not None:
-            _line(axes, (placed.at, placed.leader), style["text"], 0.4, "", 8)
+            parts.append(_line((placed.at, placed.leader), style["text"], 0.4, 8))
         axes.text(
             *placed.center, placed.text, fontsize=LABEL_SIZE, color=style["text"], ha="center", va="center",
             zorder=9, gid=f"{prefix}label-{placed.text}",
         )  # fmt: skip
+    for part in parts:
+        axes.add_artist(part)
 
 
 _SIDE, _MARGIN = 360.0, 50.0
@@ -106,139 +102,84 @@ def draw_mechanism(mechanism: Mechanism) -> Figure:
 
 
 def _line(
-    axes: Any, points: Sequence[Position], colour: str, width: float, gid: str, z: float
-) -> None:
-    line = Line2D(
+    points: Sequence[Position], colour: str, width: float, z: float, gid: str | None = None
+) -> Any:
+    return Line2D(
         *zip(*points, strict=True), color=colour, linewidth=width, solid_capstyle="round", solid_joinstyle="round",
-        zorder=z, gid=gid or None, clip_on=False,
+        zorder=z, gid=gid, clip_on=False,
     )  # fmt: skip
-    axes.add_artist(line)
 
 
-def _pin(x: float, y: float, colour: str, gid: str | None = None) -> Any:
-    return Circle(
-        (x, y),
-        PIN,
-        facecolor="white",
-        edgecolor=colour,
-        linewidth=0.9,
-        zorder=6,
-        gid=gid,
-        clip_on=False,
-    )
+def _pin(at: Position, colour: str, gid: str | None = None) -> Any:
+    look = {"facecolor": "white", "edgecolor": colour, "linewidth": 0.9, "clip_on": False}
+    return Circle(at, PIN, zorder=6, gid=gid, **look)
 
 
-def _arrow(start: Position, end: Position, colour: str, gid: str | None = None) -> Any:
+def _arrow(ends: Sequence[Position], colour: str, gid: str | None = None) -> Any:
     return FancyArrowPatch(
-        start, end, arrowstyle="-|>", mutation_scale=8, shrinkA=0, shrinkB=0, color=colour, linewidth=1.5, zorder=7,
+        *ends, arrowstyle="-|>", mutation_scale=8, shrinkA=0, shrinkB=0, color=colour, linewidth=1.5, zorder=7,
         gid=gid, clip_on=False, joinstyle="miter",
     )  # fmt: skip
 
 
-def _supports(axes: Any, seen: Sketch, style: SketchColours, prefix: str) -> None:
-    """Rails or the telescopic base, a support under each fixed point and a slider around each
-    sliding one.
-    """
-    for number, ends in enumerate(seen.rails, 1):
-        _line(
-            axes,
-            ends,
-            style["base"],
-            1.8,
-            f"{prefix}base" + (f"-{number}" if number > 1 else ""),
-            1,
-        )
-        _line(axes, ends, "white", 0.7, "", 1.1)
-    for name, kind in seen.mechanism.supports.items():
-        x, y = seen.nodes[name]
-        fixed = kind is Support.PIN
-        for artist in (
-            _support(x, y, style["base"])
-            if fixed
-            else [_slider(x, y, style["base"], kind is Support.SLIDER_Y)]
-        ):
-            axes.add_artist(artist)
-
-
-def _support(x: float, y: float, colour: str) -> list[Any]:
-    """A triangle on hatched ground."""
+def _support(kind: Support, at: Position, colour: str) -> list[Any]:
+    """A triangle on hatched ground, or a slider's box."""
+    x, y = at
+    look: dict[str, Any] = {
+        "facecolor": "white",
+        "edgecolor": colour,
+        "linewidth": 0.9,
+        "clip_on": False,
+    }
+    if kind is not Support.PIN:
+        width, height = SLIDER if kind is Support.SLIDER_X else SLIDER[::-1]
+        return [Rectangle((x - width, y - height), 2 * width, 2 * height, zorder=1.6, **look)]
     width, height = SUPPORT
     bottom = y - height
-    triangle = Polygon(
-        [(x, y), (x - width, bottom), (x + width, bottom)], facecolor="white", edgecolor=colour, linewidth=0.9,
-        zorder=1.5, clip_on=False, joinstyle="round",
-    )  # fmt: skip
-    lines = [((x - width - 2, bottom), (x + width + 2, bottom))]
+    corners = [at, (x - width, bottom), (x + width, bottom)]
+    ground = [(x - width - 2, bottom)]
     for k in range(5):
         right = x - width + 2 + k * 3.6
-        lines.append(((right, bottom), (right - GROUND, bottom - GROUND)))
-    ground = [
-        Line2D(*zip(*line, strict=True), color=colour, linewidth=0.7, zorder=1.5, clip_on=False)
-        for line in lines
+        ground += [(right, bottom), (right - GROUND, bottom - GROUND), (right, bottom)]
+    ground.append((x + width + 2, bottom))
+    return [
+        Polygon(corners, zorder=1.5, joinstyle="round", **look),
+        _line(ground, colour, 0.7, 1.5),
     ]
-    return [triangle, *ground]
-
-
-def _slider(x: float, y: float, colour: str, upright: bool = False) -> Any:
-    width, height = SLIDER[::-1] if upright else SLIDER
-    return Rectangle(
-        (x - width, y - height), 2 * width, 2 * height, facecolor="white", edgecolor=colour, linewidth=0.9,
-        zorder=1.6, clip_on=False,
-    )  # fmt: skip
-
-
-def bar_mark(number: int, style: SketchColours = STRONG, many: bool = False) -> Mark:
-    """A bar in a legend: of two a number, or one of many."""
-    width = MANY_BARS if many else BAR_WIDTHS[number]
-    return line_mark(
-        {"color": style[f"bar-{number}"], "linewidth": width, "solid_capstyle": "butt"}
-    )
-
-
-def spring_mark() -> Mark:
-    """A spring in a legend."""
-    ends, turns = 0.04, 5
-    points = [(0.0, 0.0), (ends, 0.0)]
-    for k in range(2 * turns):
-        u = ends + (SWATCH - 2 * ends) * (k + 0.5) / (2 * turns)
-        points.append((u, AMPLITUDE / 72 * (1 if k % 2 else -1)))
-    look = {"color": STRONG["spring"], "linewidth": 0.95, "solid_joinstyle": "round"}
-    return line_mark(look, points=[*points, (SWATCH - ends, 0.0), (SWATCH, 0.0)])
 
 
 _SMALL_SPIRAL = 6.8
 """In points, the radius in a legend, whose lines are no higher."""
 
 
-def symbol_mark(kind: str) -> Mark:
-    """The support, the slider, a load's arrow, or a spiral about its joint in a legend."""
+def part_mark(part: str, style: SketchColours = STRONG, width: float = BAR_WIDTHS[0]) -> Mark:
+    """A part in a legend: a support, a slider, a load's arrow, a spring, a spiral about its joint or,
+    by its colour, a bar of a width.
+    """
 
     def mark(figure: Any, left: float, middle: float) -> None:
-        x, y = (left + SWATCH / 2) * 72, middle * 72
-        artists = {
-            "support": lambda: [*_support(x, y + 6, STRONG["base"]), _pin(x, y + 6, STRONG["base"])],
-            "slider": lambda: [
-                Line2D((x - 9, x + 9), (y, y), color=STRONG["base"], linewidth=1.8, zorder=1),
-                _slider(x, y, STRONG["base"]), _pin(x, y, STRONG["base"]),
-            ],
-            "load": lambda: [_arrow((x - 9, y), (x + 9, y), STRONG["load"])],
-            "spiral": lambda: [
-                Line2D(
-                    *zip(*spiral((x, y), (x + 1, y), SPIRAL[0] - 0.4, _SMALL_SPIRAL), strict=True),
-                    color=STRONG["spring"], linewidth=0.95, solid_capstyle="round", solid_joinstyle="round",
-                ),
-                _pin(x, y, STRONG["base"]),
-            ],
-        }[kind]()  # fmt: skip
-        for artist in artists:
-            artist.set_transform(_points(figure))
+        half, base = 36 * SWATCH, style["base"]
+        ends = ((-half, 0.0), (half, 0.0))
+        match part:
+            case "support":
+                drawn = [*_support(Support.PIN, (0, 6), base), _pin((0, 6), base)]
+            case "slider":
+                rail = _line(((-9, 0), (9, 0)), base, 1.8, 1)
+                drawn = [rail, *_support(Support.SLIDER_X, (0, 0), base), _pin((0, 0), base)]
+            case "load":
+                drawn = [_arrow(((-9, 0), (9, 0)), style["load"])]
+            case "spring":
+                wound = coil(0j, 1 + 0j, 2 * half - 5.8, 5)
+                drawn = [_line((ends[0], *wound, ends[1]), style["spring"], 0.95, 5)]
+            case "spiral":
+                turns = spiral((0, 0), (1, 0), SPIRAL[0] - 0.4, _SMALL_SPIRAL)
+                drawn = [_line(turns, style["spring"], 0.95, 5), _pin((0, 0), base)]
+            case _:
+                drawn = [_line(ends, style[part], width, 2)]
+                drawn[0].set_solid_capstyle("butt")
+        place = Affine2D().translate(72 * left + half, 72 * middle).scale(1 / 72)
+        for artist in drawn:
+            artist.set_transform(place + figure.dpi_scale_trans)
             figure.add_artist(artist)
 
     return mark
-
-
-def _points(figure: Any) -> Any:
-    """From points on the page to pixels."""
-    from matplotlib.transforms import Affine2D
-
-    return Affine2D().scale(1 / 72) + figure.dpi_scale_trans

@@ -16,8 +16,7 @@ import numpy as np
 from ptmcad.answer.words import several
 from ptmcad.show.render.colours import CORE, INK, RIM, RIM_INK, Paint
 from ptmcad.show.render.legend import Entry, point_mark
-from ptmcad.show.render.outline import Shapes
-from ptmcad.show.render.view import Floats, Point, View
+from ptmcad.show.render.view import Floats, Point, Shapes, View
 
 _OVER = 0.004
 """Of the view's sides: more than half a rim's width."""
@@ -41,13 +40,11 @@ def paint_map(axes: Any, seen: Shapes, prefix: str, paint: Paint, place: Any = N
             )
         )  # fmt: skip
     rim = (CORE + 2 * RIM) * paint.scale if result.cover is not None else 0.0
-    for number, region in enumerate(result.regions):
-        polygons = [
-            Curve(_beyond(np.vstack([p, p[:1]])), closed=True) for p in seen.polygons(number)
-        ]
-        if not polygons:
+    for number, outlines in enumerate(seen.polygons()):
+        if not outlines:
             continue
-        fill = paint.fill(region)
+        polygons = [Curve(_beyond(np.vstack([p, p[:1]])), closed=True) for p in outlines]
+        fill = paint.fill(result.regions[number])
         # one path for all parts: where two of them share an edge, their coverage adds up and no
         # seam is left
         axes.add_artist(
@@ -57,7 +54,7 @@ def paint_map(axes: Any, seen: Shapes, prefix: str, paint: Paint, place: Any = N
                 gid=f"{prefix}region-{number}",
             )
         )  # fmt: skip
-    edges = [Curve(_beyond(edge), closed=True) for edge in seen.edges()]
+    edges = [Curve(_beyond(edge), closed=True) for edge in seen.rims()]
     if edges:
         # all but the regions, whose outlines have them at the left hand, and a line's width of
         # them: what is undetermined is seen between its rims, however narrow it is

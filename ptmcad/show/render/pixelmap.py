@@ -42,27 +42,20 @@ def grid_png(grid: Grid, dpi: int = DPI) -> bytes:
     """
     stability_known = bool((grid.stable != NONE).any())
     counts = grid.stable if stability_known else grid.total
-    known = sorted({int(count) for count in np.unique(counts)} - {NONE})
-    colours = [
-        UNDETERMINED.face,
-        *(
-            fill_of_counts(
-                Counts(0, count, None) if stability_known else Counts(count, None, None)
-            ).face
-            for count in known
-        ),
-    ]  # pixels show no hatch
-    codes = np.searchsorted(np.array([NONE, *known]), counts)
+    shown = np.unique(counts)
+    look: dict[int, tuple[str, str]] = {NONE: ("undetermined", UNDETERMINED.face)}
+    for n in set(shown.tolist()) - {NONE}:
+        known = Counts(0, n, None) if stability_known else Counts(n, None, None)
+        look[n] = str(n), fill_of_counts(known).face  # pixels show no hatch
+    names, colours = zip(*(look[n] for n in shown.tolist()), strict=True)
     with settings():
         figure, axes = _chart(grid, dpi)
-        steps = BoundaryNorm(np.arange(len(colours) + 1) - 0.5, len(colours))
+        steps = BoundaryNorm(np.arange(len(shown) + 1) - 0.5, len(shown))
+        codes = np.searchsorted(shown, counts)
         image = show_pixels(axes, codes, grid.extent, cmap=ListedColormap(colours), norm=steps)
         _walls(axes, grid, grid.region)
-        shown = [k for k in range(len(colours)) if k or (counts == NONE).any()]
-        bar = figure.colorbar(
-            image, ax=axes, boundaries=[shown[0] - 0.5, *(k + 0.5 for k in shown)], ticks=shown
-        )
-        bar.ax.set_yticklabels([str(known[k - 1]) if k else "undetermined" for k in shown])
+        bar = figure.colorbar(image, ax=axes, ticks=range(len(shown)))
+        bar.ax.set_yticklabels(names)
         bar.set_label("stable" if stability_known else "in all")
         return printed(figure, "png", dpi, repr(grid), "")
 

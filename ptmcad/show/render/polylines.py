@@ -8,6 +8,9 @@ browsers add the steps up in single precision, in which whole numbers of this si
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
+from itertools import pairwise
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -20,12 +23,6 @@ _MAX_DEPTH = 32
 """Halvings of a piece, and corners of the shorter ones into which it is cut when it still departs
 too far then.
 """
-
-
-def distinct(corners: Integers) -> Integers:
-    """Without corners that are where the one before them is."""
-    kept: Integers = corners[np.concatenate([[True], (corners[1:] != corners[:-1]).any(axis=1)])]
-    return kept
 
 
 def simplified_polygon(corners: Floats, tolerance: float) -> Floats:
@@ -101,6 +98,30 @@ def _distances(points: Floats, a: Floats, b: Floats) -> Floats:
     return distances
 
 
+def refined(
+    column: Callable[[float], Floats], places: Sequence[float], tolerance: float, depth: int
+) -> dict[float, Floats]:
+    """Points of some curves at common places, in increasing order, so near to each other that no
+    chord misses the middle of its curve by more than the tolerance, up to a depth of halvings.
+
+    Parameters
+    ----------
+    column : the curves' points at a place, shape (curves, 2).
+    places : those at first, increasing.
+    """
+    known = {place: column(place) for place in places}
+    pending = list(pairwise(places))
+    for _ in range(depth):
+        following = []
+        for a, b in pending:
+            middle = (a + b) / 2
+            known[middle] = column(middle)
+            if _distances(known[middle], known[a], known[b]).max(initial=0.0) > tolerance:
+                following += [(a, middle), (middle, b)]
+        pending = following
+    return dict(sorted(known.items()))
+
+
 GRID = 20
 """Steps of the grid in one of the picture's units; what is drawn by such data is scaled down by as
 much.
@@ -108,42 +129,18 @@ much.
 
 
 def path_data(line: Floats, *, closed: bool = False) -> str:
-    """The data of a polyline, or of a polygon; corners within a side along an axis are left out.
+    """The data of a polyline, or of a polygon.
 
     A line that is shorter than a step is drawn one step long: a browser leaves out one without
     length.
 
     >>> path_data(np.array([[0, 10], [2.5, 10], [3, 10], [3, 9.75], [2, 9.1], [1.5, 8.5]]))
-    'M0 200h60v-5l-20-13-10-12'
+    'M0 200l50 0 10 0 0-5-20-13-10-12'
     """
-    corners = _needed(np.rint(line * GRID).astype(np.int64))
-    if len(corners) == 1:
-        corners = np.concatenate([corners, corners + np.array([[1, 0]])])
+    corners = np.rint(line * GRID).astype(np.int64)
+    steps = np.diff(corners, axis=0)
+    steps = steps[steps.any(axis=1)]
+    pairs = steps.tolist() or [[1, 0]]
     x, y = corners[0].tolist()
-    parts, last = [f"M{x}{_after(y)}"], "M"
-    for dx, dy in np.diff(corners, axis=0).tolist():
-        command, numbers = (
-            ("v", f"{dy}") if not dx else ("h", f"{dx}") if not dy else ("l", f"{dx}{_after(dy)}")
-        )
-        parts.append(command if command != last else "" if numbers[0] == "-" else " ")
-        parts.append(numbers)
-        last = command
-    return "".join(parts) + "z" * closed
-
-
-def _after(steps: int) -> str:
-    """A number after another one: a minus sign parts them, too."""
-    return str(steps) if steps < 0 else f" {steps}"
-
-
-def _needed(corners: NDArray[np.int64]) -> NDArray[np.int64]:
-    """Without corners that are where the one before them is, or on the way along an axis to the
-    next one.
-    """
-    corners = distinct(corners)
-    if len(corners) < 3:
-        return corners
-    steps = np.sign(np.diff(corners, axis=0))
-    straight = (steps[1:] == steps[:-1]).all(axis=1) & (steps[1:] == 0).any(axis=1)
-    kept: NDArray[np.int64] = corners[np.concatenate([[True], ~straight, [True]])]
-    return kept
+    text = f"M{x} {y}l" + " ".join(f"{dx} {dy}" for dx, dy in pairs)
+    return text.replace(" -", "-") + "z" * closed

@@ -12,7 +12,7 @@ poses.
 from __future__ import annotations
 
 import textwrap
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from fractions import Fraction
 
 from matplotlib.figure import Figure
@@ -28,14 +28,12 @@ from ptmcad.show.render.axes import symbol, with_symbols
 from ptmcad.show.render.colours import INK
 from ptmcad.show.render.inches import TITLE_LINE, axes_at, stroke, titled, write, write_lines
 from ptmcad.show.render.labels import Position
-from ptmcad.show.render.legend import Entry, Type, draw_legend
+from ptmcad.show.render.legend import Entry, Mark, Type, draw_legend
 from ptmcad.show.render.mechanism import (
     PALE,
     STRONG,
-    bar_mark,
     draw_sketch,
-    spring_mark,
-    symbol_mark,
+    part_mark,
 )
 from ptmcad.show.render.posewords import (
     describe,
@@ -47,6 +45,8 @@ from ptmcad.show.render.posewords import (
 )
 from ptmcad.show.render.printing import settings
 from ptmcad.show.render.sketch import (
+    BAR_WIDTHS,
+    MANY_BARS,
     MAX_ARROW,
     MIN_ARROW,
     PanelFrame,
@@ -165,8 +165,8 @@ def legend(poses: Poses, arrows: Mapping[str, float]) -> Iterator[Entry]:
     assert mechanism is not None
     yield Entry(("Poses",), strong=True)
     if poses.known_stable is not None:
-        yield Entry(("stable: strong colours, dark frame",), bar_mark(0, STRONG))
-        yield Entry(("unstable or degenerate: pale",), bar_mark(0, PALE))
+        yield Entry(("stable: strong colours, dark frame",), part_mark("bar-0"))
+        yield Entry(("unstable or degenerate: pale",), part_mark("bar-0", PALE))
     else:
         yield Entry(tuple(textwrap.wrap(untold(mechanism), _KEY_COLUMNS)))
     if any(pose.energy is not None for pose in poses.equilibria):
@@ -185,65 +185,49 @@ def legend(poses: Poses, arrows: Mapping[str, float]) -> Iterator[Entry]:
         shortened = any(abs(length) == MIN_ARROW < MAX_ARROW for length in arrows.values())
         lines = ["loads; arrows in proportion to them" if len(loads) > 1 else "load"]
         lines += ["except that short ones are lengthened"] if shortened else []
-        yield Entry((*lines, *textwrap.wrap(",  ".join(loads), _KEY_COLUMNS)), symbol_mark("load"))
+        yield Entry((*lines, *textwrap.wrap(",  ".join(loads), _KEY_COLUMNS)), part_mark("load"))
     yield Entry(())
 
 
 def parts_legend(mechanism: Mechanism) -> Iterator[Entry]:
     """Bars, springs and supports, and where they are."""
     bars = ["".join(map(symbol, ends)) for ends in mechanism.bars]
-    if len(bars) <= 2:
-        width = (" (wide)", " (narrow)") if len(bars) == 2 else ("",)
-        for number, name in enumerate(bars):
-            yield Entry((f"bar {name}{width[number]}",), bar_mark(number))
+    if len(bars) > len(BAR_WIDTHS):
+        yield from _parts("bar", bars, part_mark("bar-0", width=MANY_BARS))
     else:
-        yield Entry(
-            tuple(textwrap.wrap(f"bars {', '.join(bars)}", _KEY_COLUMNS)), bar_mark(0, many=True)
-        )
+        sizes = ("wide", "narrow") if len(bars) > 1 else ("",)
+        for number, (bar, size) in enumerate(zip(bars, sizes, strict=False)):
+            name = f"{bar} ({size})" if size else bar
+            yield from _parts("bar", [name], part_mark(f"bar-{number}", width=BAR_WIDTHS[number]))
     springs = ["".join(map(symbol, ends)) for ends in mechanism.spring_ends]
-    if springs:
-        names = textwrap.wrap(
-            f"spring{'s' * (len(springs) > 1)} {', '.join(springs)};", _KEY_COLUMNS
-        )
-        yield Entry(
-            (*names, "drawn aside where one lies on", "a bar or is very short"), spring_mark()
-        )
-    yield from torsion_legend(mechanism)
-    yield from support_legend(mechanism)
-
-
-def torsion_legend(mechanism: Mechanism) -> Iterator[Entry]:
-    """Torsion springs at their joints, and those of which no joint is known."""
-    springs = [
+    aside = "; drawn aside where one lies on a bar or is very short"
+    yield from _parts("spring", springs, part_mark("spring"), end=aside)
+    torsion = [
         (with_symbols(to_text(spring.angle)), joint) for spring, joint in torsion_springs(mechanism)
     ]
-    drawn = [f"{angle} at {symbol(joint.point)}" for angle, joint in springs if joint is not None]
-    others = [angle for angle, joint in springs if joint is None]
-    for texts, end, mark in ((drawn, "", symbol_mark("spiral")), (others, "; not drawn", None)):
-        if texts:
-            each = ", ".join(text.replace(" ", "\N{NO-BREAK SPACE}") for text in texts)
-            words = f"torsion spring{'s' * (len(texts) > 1)} on {each}{end}"
-            yield Entry(tuple(textwrap.wrap(words, _KEY_COLUMNS)), mark)
-
-
-def support_legend(mechanism: Mechanism) -> Iterator[Entry]:
-    """Where the mechanism is held."""
-    at = {
-        support: [symbol(name) for name, of in mechanism.supports.items() if of is support]
-        for support in Support
+    wound = [f"{angle} at {symbol(joint.point)}" for angle, joint in torsion if joint is not None]
+    others = [angle for angle, joint in torsion if joint is None]
+    yield from _parts("torsion spring", wound, part_mark("spiral"), " on")
+    yield from _parts("torsion spring", others, None, " on", "; not drawn")
+    words = {
+        Support.PIN: "fixed support",
+        Support.SLIDER_X: "slider",
+        Support.SLIDER_Y: "vertical slider",
     }
-    if pins := at[Support.PIN]:
-        yield Entry(
-            (f"fixed support{'s' * (len(pins) > 1)}, at {', '.join(pins)}",), symbol_mark("support")
-        )
-    on_base = pins and len(at[Support.SLIDER_X]) == 1
-    words = {Support.SLIDER_X: "slider", Support.SLIDER_Y: "vertical slider"}
-    for slider, what in words.items():
-        if names := at[slider]:
-            many = (
-                " on the base" if slider is Support.SLIDER_X and on_base else "s" * (len(names) > 1)
-            )
-            yield Entry((f"{what}{many}, at {', '.join(names)}",), symbol_mark("slider"))
+    for support, what in words.items():
+        at = [symbol(name) for name, of in mechanism.supports.items() if of is support]
+        mark = part_mark("support" if support is Support.PIN else "slider")
+        yield from _parts(what, at, mark, ", at")
+
+
+def _parts(
+    what: str, names: Sequence[str], mark: Mark | None, between: str = "", end: str = ""
+) -> Iterator[Entry]:
+    """Parts of a kind by their names, if there are any."""
+    if names:
+        listed = ", ".join(name.replace(" ", "\N{NO-BREAK SPACE}") for name in names)
+        words = f"{what}{'s' * (len(names) > 1)}{between} {listed}{end}"
+        yield Entry(tuple(textwrap.wrap(words, _KEY_COLUMNS)), mark)
 
 
 def _load_texts(mechanism: Mechanism, acting: LoadsAt) -> Iterator[str]:

@@ -244,19 +244,25 @@ def _spring(
     if along.real < -1e-9 or (abs(along.real) <= 1e-9 and along.imag < 0):
         return _spring(end, start, drawn, turns)[::-1]  # aside means above first, not below
     wound = max(_MIN_LENGTH, abs(span) - 2 * _END)
-    teeth = 2 * (max(MIN_TURNS, round(wound / TURN)) if turns is None else turns)
-    tips = [
-        complex(wound * ((k + 0.5) / teeth - 0.5), AMPLITUDE if k % 2 else -AMPLITUDE)
-        for k in range(teeth)
-    ]
+    number = max(MIN_TURNS, round(wound / TURN)) if turns is None else turns
     tried = (0.0, *_ASIDE) if abs(span) >= _MIN_LENGTH + 2 * _END else _ASIDE
     for aside in tried:
         middle = complex(*start) + span / 2 + 1j * along * aside
-        points = [middle + along * tip for tip in (-wound / 2, *tips, wound / 2)]
-        line = (start, *((point.real, point.imag) for point in points), end)
+        line = (start, *coil(middle, along, wound, number), end)
         if not _covered(line, drawn):
             break
     return line
+
+
+def coil(middle: complex, along: complex, length: float, turns: int) -> list[Position]:
+    """A zigzag about a middle, in a direction of length 1."""
+    teeth = 2 * turns
+    tips = [
+        complex(length * ((k + 0.5) / teeth - 0.5), AMPLITUDE if k % 2 else -AMPLITUDE)
+        for k in range(teeth)
+    ]
+    points = [middle + along * tip for tip in (-length / 2, *tips, length / 2)]
+    return [(point.real, point.imag) for point in points]
 
 
 def _covered(line: Sequence[Position], drawn: Sequence[Stroke]) -> bool:

@@ -8,7 +8,7 @@ steps of shortening the view reach.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Any, TypeAlias
@@ -17,13 +17,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ptmcad.answer.regionmap import Cell, Region, RegionMap
+from ptmcad.answer.remembered import remembered
 from ptmcad.exact.cad.decomposition import members, region_numbers
 from ptmcad.show.render.colours import INK
 from ptmcad.show.render.inches import text_width
-from ptmcad.show.render.labels import Box, Label, Stroke, around, place, polyline
-from ptmcad.show.render.outline import Shapes
-from ptmcad.show.render.polylines import simplified_line
-from ptmcad.show.render.view import Interval, Point, View, remembered
+from ptmcad.show.render.labels import Label, around, place, polyline
+from ptmcad.show.render.view import Interval, Point, Shapes, View
 from ptmcad.show.style import Size
 from ptmcad.show.table import count_text
 
@@ -35,6 +34,9 @@ _CLEAR = 2
 """A square of 2 * _CLEAR + 1 pixels of the view's _PIXELS is seen clearly."""
 
 Mask = NDArray[np.bool_]
+Part = tuple[float, float]
+_WHOLE = (0.0, 1.0)
+"""Of a view along an axis."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -72,12 +74,10 @@ def unstable_zooms(whole: Shapes, pixels: int, most: int) -> tuple[Zoom, ...]:
     what is shown then is the map itself, with the thin curve around that part.
     """
     result = whole.result
-    all_known = all(None not in (region.total, region.index) for region in result.regions)
-    if result.cover is not None or not result.slice.count.is_of_stable or all_known:
+    if result.cover is not None or not result.slice.count.is_of_stable:
         return ()
     finer = told_apart(result)
-    outline: Any = whole
-    in_parts: Shapes = replace(outline, result=finer)
+    in_parts = replace(whole, result=finer)
 
     def part(region: int) -> Cell:
         return result.cells[finer.regions[region].cells[0]]
@@ -149,54 +149,40 @@ def zooms(whole: Shapes, thin: Sequence[int], most: int = MAX_ZOOMS) -> tuple[Zo
 
 def _zoom(whole: Shapes, region: int) -> Shapes:
     """A view around the region, shortened until the region is clearly seen."""
-    view, seen = whole.view, whole
-    window = whole.view
-    for _ in range(STEPS):
-        box = _bounding_box(seen, region)
-        if box is None or min(box[1] - box[0], box[3] - box[2]) > 0.3:
-            break
-        view = View(_stretched(view.x, box[:2], window.x), _stretched(view.y, box[2:], window.y))
-        seen = whole.in_view(view)
+    seen = whole
     for _ in range(STEPS):
         depth, at = _thick(seen, region)
-        if depth >= _CLEAR:
-            break
-        factor = Fraction(1, 16 if depth < 0 else 2)
-        view = View(
-            _shortened(view.x, at[0], window.x, factor), _shortened(view.y, at[1], window.y, factor)
-        )
-        seen = whole.in_view(view)
+        parts = [_part(ends) for ends in _extent(seen, region)]
+        if all(part == _WHOLE for part in parts):
+            if depth >= _CLEAR:
+                break
+            half = 1 / 32 if depth < 0 else 1 / 4
+            parts = [(c - half, c + half) for c in seen.view.approximate_position(at)]
+        intervals = (seen.view.x, seen.view.y), (whole.view.x, whole.view.y)
+        seen = whole.in_view(View(*map(_nearer, parts, *intervals)))
     return seen
 
 
-def _bounding_box(seen: Shapes, region: int) -> Box | None:
-    """The visible part of the region: left, right, bottom, top in the view's coordinates."""
-    parts = [np.clip(polygon, 0.0, 1.0) for polygon in seen.polygons(region)]
+def _extent(seen: Shapes, region: int) -> list[Part]:
+    """From where to where the region is seen along each axis, as shares of the view."""
+    parts = [np.clip(polygon, 0.0, 1.0) for polygon in seen.polygons()[region]]
     if not parts:
-        return None
+        return [_WHOLE]
     points = np.concatenate(parts)
-    (left, bottom), (right, top) = points.min(axis=0), points.max(axis=0)
-    return float(left), float(right), float(bottom), float(top)
+    return list(zip(points.min(axis=0).tolist(), points.max(axis=0).tolist(), strict=True))
 
 
-def _stretched(shown: Interval, part: Sequence[float], window: Interval) -> Interval:
-    """The interval of the axis for the part, with a margin, if the part is short; else as it is."""
-    low, high = part
-    if high - low > 0.3:
-        return shown
+def _part(ends: Part) -> Part:
+    """With a margin, if it is short; else all of the view."""
+    low, high = ends
     margin = max(0.25 * (high - low), 2.0**-14)
-    width = shown[1] - shown[0]
-    return (
-        max(window[0], shown[0] + width * Fraction(low - margin)),
-        min(window[1], shown[0] + width * Fraction(high + margin)),
-    )
+    return _WHOLE if high - low > 0.3 else (low - margin, high + margin)
 
 
-def _shortened(shown: Interval, at: Fraction, window: Interval, factor: Fraction) -> Interval:
-    """A shorter interval around a point, within the window."""
-    width = (shown[1] - shown[0]) * factor
-    low = max(window[0], min(at - width / 2, window[1] - width))
-    return low, low + width
+def _nearer(part: Part, shown: Interval, window: Interval) -> Interval:
+    """A part of what is shown of an axis, within the window."""
+    low, high = (shown[0] + (shown[1] - shown[0]) * Fraction(share) for share in part)
+    return max(window[0], low), min(window[1], high)
 
 
 def _thick(seen: Shapes, region: int) -> tuple[int, Point]:
@@ -312,7 +298,8 @@ def arrows(
         labels.append(Label(name, (x, y), half, inwards, across=False))
     bounds = (_EDGE, _EDGE, sides[0] - _EDGE, sides[1] - _EDGE)
     around_tips = [around(point, (_TIP, _TIP)) for point in points]
-    strokes = _borders(whole, sides) if labels else ()
+    borders = whole.borders(_ROUGHLY) if labels else ()
+    strokes = (s for line in borders for s in polyline((line * sides).tolist(), 0.5))
     placed = place(labels, strokes, around_tips, bounds, [scale * d for d in _DISTANCES], skip)
     return [
         (
@@ -324,14 +311,6 @@ def arrows(
         )
         for (sliver, _), tip, one in zip(named, tips, placed, strict=True)
     ]  # fmt: skip
-
-
-def _borders(whole: Shapes, sides: Size) -> Iterator[Stroke]:
-    """What labels are not to cover: where counts change, roughly."""
-    lines = [line for _, separates, line in whole.walls(_ROUGHLY) if separates]
-    lines += [simplified_line(line, _ROUGHLY) for line in whole.edges()]
-    for line in lines:
-        yield from polyline((line * sides).tolist(), 0.5)
 
 
 def arrows_of(

@@ -19,9 +19,9 @@ from ptmcad.answer.family import FamilyMap
 from ptmcad.answer.regionmap import RegionMap
 from ptmcad.show.render.axes import axis_name, symbol
 from ptmcad.show.render.chartgrid import (
-    family_entries,
     head_and_foot,
     in_words,
+    map_entries,
     title_of,
     value_text,
 )
@@ -68,7 +68,7 @@ def _figure(
     figure = Figure(figsize=(wide, tall), dpi=dpi, facecolor="white")
     paint = paint_of(style, *family.members)
     colours = {} if surface is None else sheet_colours(family, surface, paint)
-    legend = family_entries(family, paint)
+    legend = map_entries(paint, *family.members)
     if surface is None:
         legend += _of_floors(family)
     else:
@@ -197,11 +197,11 @@ def _floor(
     seen = shapes(result)
     scale, origin = _frame(result)
     if least is not None:
-        for number, region in enumerate(result.regions):
-            polygons = [
-                Curve(polygon * scale + origin, closed=False) for polygon in seen.polygons(number)
-            ]
-            if polygons:
+        for number, (region, outlines) in enumerate(
+            zip(result.regions, seen.polygons(), strict=True)
+        ):
+            if outlines:
+                polygons = [Curve(outline * scale + origin) for outline in outlines]
                 # one path for all parts, as on the page: where two of them share an edge no seam is
                 # left
                 patch = PathPatch(
@@ -230,7 +230,8 @@ def _lifted(result: RegionMap, height: float) -> list[Any]:
     """The curves of a map at which counts change, and the rims of what is undetermined, at a
     height.
     """
-    seen = shapes(result)
     scale, origin = _frame(result)
-    lines = [line for _, separates, line in seen.walls() if separates] + list(seen.edges())
-    return [np.column_stack([line * scale + origin, np.full(len(line), height)]) for line in lines]
+    return [
+        np.column_stack([line * scale + origin, np.full(len(line), height)])
+        for line in shapes(result).borders()
+    ]

@@ -23,12 +23,12 @@ from ptmcad.show.render.axes import heading_of, named, symbol
 from ptmcad.show.render.colours import UNDETERMINED, Fill, fill_of
 from ptmcad.show.render.outline import shapes
 from ptmcad.show.render.polylines import GRID
-from ptmcad.show.report.mapsvg import outline_data, paints, pattern_defs
+from ptmcad.show.report.mapsvg import outline_data, paints, pattern_defs, shortened
 from ptmcad.show.report.reportpage import asset, harmless, policy_of, template
 from ptmcad.show.report.sections import swatch
 from ptmcad.show.sweeptable import counts_in, middle
 from ptmcad.show.table import count_text, in_order
-from ptmcad.text.numerals import fraction_of, shortest_text
+from ptmcad.text.numerals import fraction_of
 from ptmcad.version import __version__
 
 SCRIPTS = ("theme.js", "atlas.js")
@@ -130,7 +130,7 @@ def _banners(sweep: Sweep, members: Sequence[Member]) -> Iterator[str]:
 def _cell(sweep: Sweep, member: Member, sketch: Thumbnail | None) -> str:
     """One map of the sheet, as a button."""
     label = ", ".join(
-        f"{symbol(n)} = {_shown(fraction_of(member.parameters[n]))}" for n in sweep.names
+        f"{symbol(n)} = {shortened(fraction_of(member.parameters[n]))}" for n in sweep.names
     )
     if sketch is None:
         return (
@@ -157,11 +157,6 @@ def _legend(sketches: Collection[Thumbnail], counted: str) -> Iterator[str]:
         yield f"<li>{swatch(fill)}{escape(text)}</li>"
 
 
-def _shown(value: Fraction) -> str:
-    text = shortest_text(value)
-    return text if len(text) <= 14 else f"{float(value):.6g}"
-
-
 def _data(
     sweep: Sweep,
     frame: SheetFrame,
@@ -183,7 +178,7 @@ def _data(
         "swept": [
             {
                 "name": symbol(name),
-                "texts": list(map(_shown, found)),
+                "texts": list(map(shortened, found)),
                 "values": list(map(float, found)),
             }
             for name, found in (
@@ -237,7 +232,7 @@ def frame_of(sweep: Sweep, slice: Any, sketches: Iterable[Thumbnail]) -> SheetFr
     """What the maps have in common, from the slice of one of them and the drawings of all on the
     page.
     """
-    axes = tuple((a.name, _shown(a.low), _shown(a.high)) for a in slice.axes)
+    axes = tuple((a.name, shortened(a.low), shortened(a.high)) for a in slice.axes)
     common = set[str](slice.fixed).intersection(*(sketch.fixed for sketch in sketches))
     fixed = [
         part
@@ -292,10 +287,10 @@ def sketch(result: RegionMap) -> Thumbnail:
     legend = {count_text(region, count): fill_of(region, count) for region in result.regions}
     for factor in (1, 3, 9):
         paths: dict[Fill, str] = {}
-        for number, region in enumerate(result.regions):
+        for region, polygons in zip(result.regions, seen.polygons(factor * TOLERANCE), strict=True):
             fill = fill_of(region, count)
             if fill != plate:
-                data = outline_data(seen.polygons(number, factor * TOLERANCE), SIDE / GRID)
+                data = outline_data(polygons, SIDE / GRID)
                 paths[fill] = paths.get(fill, "") + data
         drawn = Thumbnail(plate, tuple(paths.items()), tuple(legend.items()), result.slice.fixed)
         if sum(map(len, paths.values())) <= MAX_CHARACTERS:

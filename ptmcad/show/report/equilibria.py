@@ -6,11 +6,12 @@ holds the equilibrium, as `ptmcad.verify` checks. Numbers that are not texts are
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
+from functools import partial
 from math import atan2
-from operator import gt
+from operator import gt, itemgetter
 from typing import Any, TypeVar
 
 from flint import acb, arb, ctx
@@ -27,6 +28,7 @@ from ptmcad.text.numerals import (
     integer_text,
     magnitude,
     nearest_multiple,
+    pointed,
     shortest_text,
     text_of,
 )
@@ -127,63 +129,55 @@ def _solutions(
     place.
     """
     system = compiled(model)
+    shown, turns = system.shown, 2 * len(model.angles)
     boxes = [_box(s, model, polynomial) for s in cell.solutions]
-    drawn = system.shown
-    formulas = (system.potential(), drawn.points, drawn.stretches, drawn.elastic[1])
+    formulas = (system.potential(), shown.points, shown.stretches, shown.elastic[1])
     poses: list[Any] = [evaluated(formulas, _Within(system, values, box)) for box in boxes]
-    energies = [energy for energy, *_ in poses]
-    energy_place = last_place((ball for ball in energies if ball is not None), _DIGITS)
-    turns = 2 * len(model.angles)
-    reals = [box[turns:] for box in boxes]
-    real_place = last_place((x for row in reals for x in row), _DIGITS)
+    energy_text = _alike(pose[0] for pose in poses if pose[0] is not None)
+    real_text = _alike(x for box in boxes for x in box[turns:])
     parts = [{} for _ in boxes] if model.drawable is None else _parts(model.drawable, poses)
-    kinds = [model.criterion.kind_of_signs(solution.signs) for solution in cell.solutions]
     order = {"stable": 0, "degenerate": len(model.unknowns) + 1}
-
-    def rank(k: int) -> tuple[int, float]:
-        energy = energies[k]  # those of one energy stay in their order
-        level = 0.0 if energy is None else _drawn(energy)
-        return order.get(kinds[k], cell.solutions[k].signs.count("-")), level
-
     found = []
-    for k in sorted(range(len(boxes)), key=rank):
-        box, at = boxes[k], energies[k]
-        angles = [degrees(box[n], box[n + 1]) for n in range(0, turns, 2)]
-        unknowns = [_angle_text(angle) for angle in angles]
+    for solution, box, (energy, *_), part in zip(cell.solutions, boxes, poses, parts, strict=True):
+        kind = model.criterion.kind_of_signs(solution.signs)
+        angles = [_angle_text(degrees(box[n], box[n + 1])) for n in range(0, turns, 2)]
         entry = {
-            "kind": kinds[k],
-            "unknowns": unknowns + [ball_text(x, real_place) for x in reals[k]],
+            "kind": kind,
+            "unknowns": [*angles, *map(real_text, box[turns:])],
             "at": [_drawn(c) for c in box],
-            "energy": "" if at is None else ball_text(at, energy_place),
-            "level": 0.0 if at is None or at.abs_upper() > MAX_DRAWN**3 else _drawn(at),
+            "energy": "" if energy is None else energy_text(energy),
+            "level": 0.0 if energy is None or energy.abs_upper() > MAX_DRAWN**3 else _drawn(energy),
         }
-        found.append(entry | parts[k])
-    return found
+        # those of one energy stay in their order
+        rank = order.get(kind, solution.signs.count("-")), 0.0 if energy is None else _drawn(energy)
+        found.append((rank, entry | part))
+    return [entry for _, entry in sorted(found, key=itemgetter(0))]
+
+
+def _alike(balls: Iterable[arb]) -> Callable[[arb], str]:
+    """How some numbers are written, all to the same last place."""
+    return partial(ball_text, exponent=last_place(balls, _DIGITS))
 
 
 def _parts(mechanism: Mechanism, poses: Sequence[Any]) -> list[dict[str, Any]]:
     """Of each equilibrium the points, and what springs of both sorts do."""
-    places = [x for _, points, _, _ in poses for place in points.values() for x in place]
     stretches = [stretch for _, _, own, _ in poses for stretch in own]
-    length_place = last_place([*places, *(length for length, _, _ in stretches)], _DIGITS)
-    force_place = last_place((force for _, _, force in stretches), _DIGITS)
-    moments = (spring.moment for _, _, _, turned in poses for spring in turned)
-    moment_place = last_place(moments, _DIGITS)
+    places = (x for _, points, _, _ in poses for place in points.values() for x in place)
+    length_text = _alike([*places, *(length for length, _, _ in stretches)])
+    force_text = _alike(force for _, _, force in stretches)
+    moment_text = _alike(spring.moment for *_, turned in poses for spring in turned)
     found = []
     for _, points, own, turned in poses:
-        moving = (points[name] for name in mechanism.moving)
+        moving = (map(length_text, points[name]) for name in mechanism.moving)
         entry: dict[str, Any] = {
             "nodes": [[_drawn(x) for x in place] for place in points.values()],
-            "places": [
-                f"({ball_text(x, length_place)}, {ball_text(y, length_place)})" for x, y in moving
-            ],
-            "lengths": [ball_text(length, length_place) for length, _, _ in own],
-            "forces": [ball_text(force, force_place) for _, _, force in own],
+            "places": [f"({', '.join(place)})" for place in moving],
+            "lengths": [length_text(length) for length, _, _ in own],
+            "forces": [force_text(force) for _, _, force in own],
         }
         if turned:
             entry["deflections"] = [
-                (_angle_text(degrees(s.cosine, s.sine)), ball_text(s.moment, moment_place))
-                for s in turned
+                (_angle_text(degrees(s.cosine, s.sine)), moment_text(s.moment)) for s in turned
             ]
         found.append(entry)
     return found
@@ -290,8 +284,7 @@ def decimal_text(bounds: tuple[Fraction, Fraction], exponent: int) -> str:
     sign = "−" if digits < 0 else ""
     if exponent > 0 or exponent < -_MAX_PLAIN_PLACES:
         return f"{sign}{text}e{exponent}" if digits else "0"
-    text = text.zfill(1 - exponent)
-    return sign + (f"{text[:exponent]}.{text[exponent:]}" if exponent else text)
+    return sign + pointed(text, exponent)
 
 
 def ball_text(ball: arb, exponent: int) -> str:

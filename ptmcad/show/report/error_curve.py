@@ -10,12 +10,11 @@ from __future__ import annotations
 from collections.abc import Iterator
 from html import escape
 from math import ceil, floor, log10
-from operator import itemgetter
 from pathlib import Path
 from typing import TypeVar
 
 from ptmcad.show.report.sections import table
-from ptmcad.text.codec import Codec, Key, line, listed, record
+from ptmcad.text.codec import Codec, line, listed, reading, record
 from ptmcad.text.node import Node, opened
 from ptmcad.text.numerals import power_of_ten
 from ptmcad.text.textfile import read_as
@@ -24,6 +23,13 @@ FORMAT = "ptmcad-error-time/1"
 MAX_BYTES = 1_000_000
 _MAX_SERIES, _MAX_POINTS = 8, 1000
 _WIDTH, _HEIGHT, _LEFT, _BOTTOM = 600, 360, 110, 100
+_TICKS = (
+    f'<path class="grid" d="M{{0:.1f}} 0V{_HEIGHT}"/>'
+    f'<text class="number x" x="{{0:.1f}}" y="{_HEIGHT + 14}" dy=".8em">{{1}}</text>',
+    f'<path class="grid" d="M0 {{0:.1f}}H{_WIDTH}"/>'
+    '<text class="number y" x="-14" y="{0:.1f}" dy=".36em">{1}</text>',
+)
+"""A line of the grid and its number, of each axis."""
 _MARKS = (
     "M-6 0a6 6 0 1 0 12 0a6 6 0 1 0 -12 0",
     "M-6 -6H6V6H-6Z",
@@ -77,18 +83,18 @@ def _some(codec: Codec[T], most: int) -> Codec[tuple[T, ...]]:
             raise node.fault("is empty")
         return found
 
-    return Codec(list, read)
+    return reading(read)
 
 
 _SERIES: Codec[Series] = record(
     lambda name, points: (name, points),
-    name=Key(line(60), itemgetter(0)),
-    points=Key(_some(listed(Codec[float](float, _positive), 2), _MAX_POINTS), itemgetter(1)),
+    name=line(60),
+    points=_some(listed(reading(_positive), 2), _MAX_POINTS),
 )
 _CURVE: Codec[ErrorCurve] = record(
     lambda error, series: (error, series),
-    error=Key(line(200), itemgetter(0)),
-    series=Key(_some(_SERIES, _MAX_SERIES), itemgetter(1)),
+    error=line(200),
+    series=_some(_SERIES, _MAX_SERIES),
 )
 
 
@@ -116,30 +122,23 @@ def _sample(number: int) -> str:
 
 
 def _picture(curve: ErrorCurve) -> Iterator[str]:
-    points = [point for _, own in curve[1] for point in own]
-    (left, right), (low, high) = (_decades([p[k] for p in points]) for k in (0, 1))
+    decades = [_decades([point[k] for _, own in curve[1] for point in own]) for k in (0, 1)]
     yield f'<svg class="map chart" viewBox="0 0 {_LEFT + _WIDTH + 24} {24 + _HEIGHT + _BOTTOM}" role="img" '
     yield f'aria-label="{escape(curve[0])}, against seconds"><g transform="translate({_LEFT} 24)">'
 
-    def across(decade: float) -> float:
-        return (decade - left) / (right - left) * _WIDTH
+    def place(axis: int, decade: float) -> float:
+        low, high = decades[axis]
+        share = (decade - low) / (high - low)
+        return _HEIGHT - share * _HEIGHT if axis else share * _WIDTH
 
-    def down(decade: float) -> float:
-        return _HEIGHT - (decade - low) / (high - low) * _HEIGHT
-
-    for decade in range(left, right + 1, max(1, (right - left) // 6)):
-        x = across(decade)
-        yield f'<path class="grid" d="M{x:.1f} 0V{_HEIGHT}"/>'
-        yield f'<text class="number x" x="{x:.1f}" y="{_HEIGHT + 14}" dy=".8em">{power_of_ten(decade)}</text>'
-    for decade in range(low, high + 1, max(1, (high - low) // 6)):
-        y = down(decade)
-        yield f'<path class="grid" d="M0 {y:.1f}H{_WIDTH}"/>'
-        yield f'<text class="number y" x="-14" y="{y:.1f}" dy=".36em">{power_of_ten(decade)}</text>'
+    for axis, (low, high) in enumerate(decades):
+        for decade in range(low, high + 1, max(1, (high - low) // 6)):
+            yield _TICKS[axis].format(place(axis, decade), power_of_ten(decade))
     yield f'<text class="name" x="{_WIDTH / 2}" y="{_HEIGHT + _BOTTOM - 16}">seconds</text>'
     yield f'<text class="name" transform="translate({36 - _LEFT} {_HEIGHT / 2}) rotate(-90)">error</text>'
     yield f'<rect class="frame" width="{_WIDTH}" height="{_HEIGHT}"/>'
     for k, (_, own) in enumerate(curve[1]):
-        places = [(across(log10(x)), down(log10(y))) for x, y in own]
+        places = [(place(0, log10(x)), place(1, log10(y))) for x, y in own]
         yield f'<path class="series s{k}" d="M{"L".join(f"{x:.1f} {y:.1f}" for x, y in places)}"/>'
         for x, y in places:
             mark = _MARKS[k % len(_MARKS)]

@@ -24,13 +24,12 @@ from ptmcad.model import Model
 from ptmcad.show.render.axes import scale_of, symbol, ticks
 from ptmcad.show.render.colours import Fill, fill_of
 from ptmcad.show.render.labels import Position
-from ptmcad.show.render.outline import Shapes
 from ptmcad.show.render.polylines import GRID, path_data
 from ptmcad.show.render.slivers import innermost, thin_regions, zooms
-from ptmcad.show.render.view import Floats, from_above
+from ptmcad.show.render.view import Floats, Shapes, from_above
 from ptmcad.show.table import count_text
 from ptmcad.show.units import unit, with_unit
-from ptmcad.text.numerals import shortest_text
+from ptmcad.text.numerals import approximate_text, shortest_text
 
 SIDE, RIM = 600, 24
 """In the picture's own units: the window's side, the rim."""
@@ -42,7 +41,8 @@ thin regions.
 """
 _WIDTHS = {".": 0.32, "−": 0.84}
 """Of characters against the type's size; digits are 0.64 wide."""
-_MAX_NAME = 24
+_MAX_NAME, _MAX_NUMBER = 24, 14
+"""Characters of an axis's name and of a number in words."""
 
 Mark = tuple[str, Position]
 """A letter and its place in the view, as fractions of the sides."""
@@ -103,26 +103,26 @@ def hatch_id(hatch: str) -> str:
     return f"hatch-{ord(hatch[0]):x}-{len(hatch)}"
 
 
+_MARKS = {
+    "/": '<path d="M0 12L12 0"/>',
+    "\\": '<path d="M0 0L12 12"/>',
+    "x": '<path d="M0 0L12 12M0 12L12 0"/>',
+    "-": '<path d="M0 6H12"/>',
+    "|": '<path d="M6 0V12"/>',
+    "+": '<path d="M0 6H12M6 0V12"/>',
+    ".": '<circle class="dot" cx="6" cy="6" r="1.5"/>',
+    "o": '<circle cx="6" cy="6" r="3"/>',
+    "*": '<path d="M6 2.4V9.6M2.4 6H9.6M3 3L9 9"/>',
+}
+"""Of matplotlib's hatch characters, a tile of 12 units, which is the size of four characters."""
+
+
 def _pattern(hatch: str) -> str:
     """A tile whose density follows the number of characters, as in the other pictures."""
     size = round(48 / len(hatch), 1)
-    half = size / 2
-    marks = {
-        "/": f'<path d="M0 {size}L{size} 0"/>',
-        "\\": f'<path d="M0 0L{size} {size}"/>',
-        "x": f'<path d="M0 0L{size} {size}M0 {size}L{size} 0"/>',
-        "-": f'<path d="M0 {half}H{size}"/>',
-        "|": f'<path d="M{half} 0V{size}"/>',
-        "+": f'<path d="M0 {half}H{size}M{half} 0V{size}"/>',
-        ".": f'<circle class="dot" cx="{half}" cy="{half}" r="{size / 8:.2f}"/>',
-        "o": f'<circle cx="{half}" cy="{half}" r="{size / 4:.2f}"/>',
-        "*": f'<path d="M{half} {size / 5:.2f}V{size * 0.8:.2f}M{size / 5:.2f} {half}H{size * 0.8:.2f}'
-        f'M{size / 4:.2f} {size / 4:.2f}L{size * 0.75:.2f} {size * 0.75:.2f}"/>',
-    }
-    body = "".join(marks[c] for c in dict.fromkeys(hatch))
     return (
         f'<pattern id="{hatch_id(hatch)}" class="hatch" width="{size}" height="{size}" '
-        f'patternUnits="userSpaceOnUse">{body}</pattern>'
+        f'viewBox="0 0 12 12" patternUnits="userSpaceOnUse">{_MARKS[hatch[0]]}</pattern>'
     )
 
 
@@ -160,21 +160,16 @@ def _window_text(seen: Shapes) -> str:
     axes = seen.result.slice.axes
     ends = (seen.view.x, seen.view.y)
     spans = (
-        f"{a.name} from {_shortened(e[0])} to {_shortened(e[1])}"
+        f"{a.name} from {shortened(e[0])} to {shortened(e[1])}"
         for a, e in zip(axes, ends, strict=True)
     )
     return "Region map over " + " and ".join(spans)
 
 
-def _shortened(value: Fraction) -> str:
+def shortened(value: Fraction) -> str:
+    """A number, to nine digits where it is long."""
     text = shortest_text(value)
-    return (
-        text
-        if len(text) <= 12
-        else f"{float(value):.6g}"
-        if abs(value) < 10**300
-        else text[:12] + "…"
-    )
+    return text if len(text) <= _MAX_NUMBER else approximate_text(value)
 
 
 def paints(fill: Fill, prefix: str = "") -> list[str]:
@@ -210,9 +205,9 @@ def region_outlines(seen: Shapes, simpler: bool = True) -> Iterator[tuple[int, s
     simpler : whether to look for corners that can be left out, of which a coarse outline has few.
     """
     tolerance = (_WALLS if seen.result.cover is None else _RIMS) / SIDE if simpler else 0.0
-    for number in range(len(seen.result.regions)):
+    for number, polygons in enumerate(seen.polygons(tolerance)):
         # one path for all parts: where two of them share an edge no seam is left
-        outline = outline_data(seen.polygons(number, tolerance))
+        outline = outline_data(polygons)
         if outline:
             yield number, outline
 

@@ -31,8 +31,9 @@ from ptmcad.model.work import split_moments
 from ptmcad.question.slice import Slice, relaxed_springs
 from ptmcad.show.render.axes import heading_of, symbol, with_symbols
 from ptmcad.show.render.colours import fill_of
-from ptmcad.show.render.outline import Shapes, shapes
+from ptmcad.show.render.outline import shapes
 from ptmcad.show.render.polylines import GRID
+from ptmcad.show.render.view import Shapes
 from ptmcad.show.report import sections
 from ptmcad.show.report.equilibria import at_sample, both
 from ptmcad.show.report.error_curve import ErrorCurve, error_section

@@ -12,6 +12,7 @@ import argparse
 import sys
 import tempfile
 from collections.abc import Callable, Sequence
+from functools import partial
 from pathlib import Path
 
 import pandas as pd
@@ -29,7 +30,7 @@ from ptmcad.studies.bench.stored import write_study
 from ptmcad.studies.bench.study import difference
 
 FLOOR = (sys.executable, "-c", "import flint, numpy, click, yaml")
-LIMITS = ("--tolerance", "1/20", "--jobs", "1", "--timeout", "30")
+LIMITS: tuple[str, ...] = ("--tolerance", "1/20", "--jobs", "1", "--timeout", "30")
 """Of certified runs of an ablation."""
 
 
@@ -66,14 +67,9 @@ def timed(options: argparse.Namespace) -> pd.DataFrame:
                 jobs.append(Job(str(path.with_suffix("")), "classify", formats, **asked))
         turns(jobs, options)
     rows = summary(jobs, "floor", "seconds")
-    costs = {number: cost for number, cost in predicted.items() if cost is not None}
-    rows["predicted s"] = pd.Series(
-        {number: round(cost.seconds, 2) for number, cost in costs.items()}, dtype=float
-    )
-    rows["predicted MB"] = pd.Series(
-        {number: round(cost.megabytes) for number, cost in costs.items()}, dtype="Int64"
-    )
-    return rows
+    costs = {n: (round(c.seconds, 2), round(c.megabytes)) for n, c in predicted.items() if c}
+    more = pd.DataFrame(costs.values(), [*costs], ["predicted s", "predicted MB"])
+    return rows.join(more).astype({"predicted MB": "Int64"})
 
 
 def ablation(options: argparse.Namespace) -> pd.DataFrame:
@@ -82,39 +78,31 @@ def ablation(options: argparse.Namespace) -> pd.DataFrame:
     """
     tables = []
     for path, slice in slices_of(options.names).items():
-        engines = ("certified",) if slice.has_free_lengths else ("exact", "any")
-        savings = [name for engine in engines for name in SAVINGS[engine]]
-        more = LIMITS if slice.has_free_lengths else ()
-        tables.append(_without(path, slice.name, slice.name, [*savings, ALL], more, options))
-        if not slice.has_free_lengths:
-            turned = "--slice", ",".join(slice.axis_names[::-1])
-            subject = f"{slice.name}, axes exchanged"
-            tables.append(_without(path, slice.name, subject, ["axis-order"], turned, options))
+        free, turned = slice.has_free_lengths, ",".join(slice.axis_names[::-1])
+        savings = [
+            name
+            for engine in (["certified"] if free else ["exact", "any"])
+            for name in SAVINGS[engine]
+        ]
+        asked = [(slice.name, [*savings, ALL], LIMITS if free else ())]
+        if not free:
+            asked.append((f"{slice.name}, axes exchanged", ["axis-order"], ("--slice", turned)))
+        for subject, names, more in asked:
+            switched: dict[str, tuple[str, ...]] = {"all made": ()}
+            switched |= {name: ("--without", name) for name in names}
+            with tempfile.TemporaryDirectory() as folder:
+                wanted = partial(
+                    classification, path, slice.name, Path(folder), "--format", "json", *more
+                )
+                jobs = [Job(subject, "classify", n, **wanted(*off)) for n, off in switched.items()]
+                jobs[0].attempt(options.timeout)  # fills caches, and compiles
+                jobs[0].usages.clear()
+                turns(jobs, options)
+            results = [RegionMap.from_json(job.said()) if job.usages else None for job in jobs]
+            rows, first = summary(jobs, "all made"), results[0]
+            rows["differs"] = [difference(first, r) if first and r else None for r in results]
+            tables.append(rows)
     return pd.concat(tables)
-
-
-def _without(
-    record: Path,
-    name: str,
-    subject: str,
-    savings: Sequence[str],
-    more: Sequence[str],
-    options: argparse.Namespace,
-) -> pd.DataFrame:
-    """The rows of one record: all savings made, and each switched off."""
-    with tempfile.TemporaryDirectory() as folder:
-        jobs = []
-        for saving in ("", *savings):
-            off = ("--without", saving) if saving else ()
-            asked = classification(record, name, Path(folder), *more, *off, "--format", "json")
-            jobs.append(Job(subject, "classify", saving or "all made", **asked))
-        jobs[0].attempt(options.timeout)  # fills caches, and compiles
-        jobs[0].usages.clear()
-        turns(jobs, options)
-    results = [RegionMap.from_json(job.said()) if job.usages else None for job in jobs]
-    rows, first = summary(jobs, "all made"), results[0]
-    rows["differs"] = [difference(first, r) if first and r else None for r in results]
-    return rows
 
 
 STUDIES: dict[str, tuple[str, Callable[[argparse.Namespace], pd.DataFrame], str]] = {

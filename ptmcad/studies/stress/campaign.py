@@ -36,7 +36,7 @@ from ptmcad.options import Progress
 from ptmcad.show.table import aligned
 from ptmcad.studies.stress.case import FEW, Case, Degenerate, Question, degenerate, free_lengths
 from ptmcad.studies.stress.doubleprecision import sextic_poses
-from ptmcad.studies.stress.judgement import Row, judge
+from ptmcad.studies.stress.judgement import Row, counts_text, judge
 from ptmcad.studies.texts import installed, page
 from ptmcad.studies.texts import markdown as table_of
 from ptmcad.text.numerals import shortest_text
@@ -187,7 +187,7 @@ def tame(dice: random.Random) -> tuple[Values, str]:
             poses = sextic_poses(p)
         except ArithmeticError:  # a degenerate point
             continue
-        return p, f"{len(poses)}/{sum(index == 0 for *_, index in poses)}"
+        return p, counts_text(poses)
 
 
 def _degenerate(dice: random.Random, *, cusp: bool) -> Degenerate:

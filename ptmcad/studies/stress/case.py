@@ -125,16 +125,7 @@ def point(**given: Fraction | int | str) -> Question:
     """A point of the paper's mechanism: L1 = 1, L2 = 3/2, rho = 7/10, k = 100 and no load unless
     given.
     """
-    values = {
-        "L1": "1",
-        "L2": "3/2",
-        "rho": "7/10",
-        "k": 100,
-        "l0": 0,
-        **dict.fromkeys(ptm().forces, 0),
-        **given,
-    }
-    p = {name: Fraction(value) for name, value in values.items()}
+    p = {name: Fraction(value) for name, value in {**TEXTS["point"], **given}.items()}
     springs, free = dict.fromkeys(ptm().stiffnesses, p.pop("k")), p.pop("l0")
     lengths = dict.fromkeys(ptm().free_lengths, free) if free else {}
     return Question(springs | lengths | p)

@@ -82,10 +82,10 @@ def newton_pose(
         except ZeroDivisionError:  # a Hessian that is singular, or not finite
             return None
         at, rest = inverse * gradient, arb_mat(2, 2, 1) - inverse * hessian
-        reaches = [abs(at[n, 0]) + (abs(rest[n, 0]) + abs(rest[n, 1])) * radius for n in (0, 1)]
+        around = arb_mat([[radius * arb(0, 1)]] * 2)
         determinant, first = hessian.det(), hessian[0, 0]
         undecided = not determinant < 0 and not (determinant > 0 and not first.contains(0))
-        if undecided or not all(reach < radius for reach in reaches):
+        if undecided or not all(abs(x) < radius for x in (rest * around - at).entries()):
             return None
         return box[0], box[1], 1 if determinant < 0 else 0 if first > 0 else 2
 

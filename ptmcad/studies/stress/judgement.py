@@ -87,7 +87,7 @@ def _stable(poses: Sequence[IndexedPose] | None) -> int:
     return -1 if poses is None else sum(index == 0 for *_, index in poses)
 
 
-def _shown(poses: Sequence[IndexedPose] | None) -> str:
+def counts_text(poses: Sequence[IndexedPose] | None) -> str:
     """How many poses there are, and how many stable ones."""
     return "none" if poses is None else f"{len(poses)}/{_stable(poses)}"
 
@@ -107,7 +107,7 @@ def _point(case: Case, found: Poses) -> tuple[Checks, Row]:
         known = proved_poses(parameters, [pose[:2] for pose in (*(double or ()), *ours)])
     else:
         known = sextic_poses(parameters)
-    text, other, error = f"{len(ours)}/{found.stable}", _shown(known), _error(ours, known)
+    text, other, error = f"{len(ours)}/{found.stable}", counts_text(known), _error(ours, known)
     checks = [
         (found.status in DECIDED, f"status {found.status.value}: {found.remark}"),
         (text == other, f"the second method finds {other}"),
@@ -125,8 +125,8 @@ def _point(case: Case, found: Poses) -> tuple[Checks, Row]:
     return checks, {
         "expected": case.expected or other,
         "found": text if ours else "undecided",
-        "double": _shown(double),
-        "double_right": _shown(double) == other,
+        "double": counts_text(double),
+        "double_right": counts_text(double) == other,
         "error": float(ball_of(error or Fraction(0))),
         "double_error": max(errors, default=None),
         "condition": float(ball_of(largest / smallest)) if smallest else None,
@@ -244,7 +244,7 @@ def _confirmed(
     """Whether the second method finds as many at a sample; a total is compared where it is given."""
     known = sextic_poses(values_at(parameters, *at))
     right = stable == _stable(known) and total in (None, len(known))
-    return right, f"the second method finds {_shown(known)} at a sample"
+    return right, f"the second method finds {counts_text(known)} at a sample"
 
 
 def _double(parameters: Expressions, at: Sequence[Fraction]) -> int:

@@ -11,10 +11,9 @@ from __future__ import annotations
 import asyncio
 import json
 from collections import OrderedDict
-from itertools import count
 
 from ptmcad.workbench.explore.jobs import SUPERSEDED, Job, Reply
-from ptmcad.workbench.worker import Task, Worker
+from ptmcad.workbench.worker import Task, Worker, WorkerLost
 
 ANSWER_SECONDS = 180.0
 """After which a worker is ended: FLINT's code, and compiling the certified engine, do not look at
@@ -27,34 +26,34 @@ Key = tuple[str, str]
 
 
 class JobQueue:
-    """The jobs of one worker, which is replaced when it has ended."""
+    """The jobs of one worker."""
 
     def __init__(self, task: Task) -> None:
-        self.task = task
-        self.worker: Worker | None = None
+        self.worker = Worker(task)
         self.waiting: OrderedDict[Key, tuple[Job, asyncio.Future[Reply]]] = OrderedDict()
-        self.current: tuple[Key, int] | None = None
+        self.current: Key | None = None
         self.wanted = asyncio.Event()
-        self.numbers = count(1)
         self.killer: asyncio.TimerHandle | None = None
 
     async def ask(self, tab: str, job: Job) -> Reply:
         """The answer to a job, which supersedes an earlier one of its kind and tab."""
         key = (tab, job["kind"])
-        future: asyncio.Future[Reply] = asyncio.get_running_loop().create_future()
+        loop = asyncio.get_running_loop()
+        future: asyncio.Future[Reply] = loop.create_future()
         before = self.waiting.pop(key, None)
         if before is not None and not before[1].done():
             before[1].set_result(SUPERSEDED)
         self.waiting[key] = (job, future)
-        if self.current is not None and self.current[0] == key:
-            self._cancel(self.current[1])
+        if self.current == key and self.killer is None:
+            self.worker.cancel()
+            self.killer = loop.call_later(CANCEL_SECONDS, self.worker.end)
         self.wanted.set()
         return await future
 
     async def run(self) -> None:
         """Hand out jobs, the oldest first, until this is cancelled; then end the process."""
         try:
-            self._running()
+            self.worker.open()
             while True:
                 await self.wanted.wait()
                 self.wanted.clear()
@@ -62,65 +61,24 @@ class JobQueue:
                     key, (job, future) = self.waiting.popitem(last=False)
                     if future.done():  # whoever asked has gone
                         continue
-                    answer = await self._answered(key, job)
+                    self.current = key
+                    answer = await self._answered(job)
                     if not future.done():
                         future.set_result(answer)
         finally:
-            self._end()
+            self.worker.close()
 
-    def _end(self) -> None:
-        """End the process, which has nothing to tidy up."""
-        if self.worker is not None:
-            self.worker.process.kill()
-            self.worker.bury()
-            self.worker = None
-
-    def _running(self) -> Worker:
-        """The process, another one where it has ended."""
-        if self.worker is not None and self.worker.process.poll() is not None:
-            self._end()
-        if self.worker is None:
-            self.worker = Worker(self.task)
-        return self.worker
-
-    async def _answered(self, key: Key, job: Job) -> Reply:
-        worker, number = self._running(), next(self.numbers)
-        self.current = (key, number)
-        worker.ask(number, job)
-        reading = asyncio.create_task(asyncio.to_thread(worker.answer))
-        reading.add_done_callback(lambda done: done.cancelled() or done.exception())
+    async def _answered(self, job: Job) -> Reply:
         try:
-            await asyncio.wait([reading], timeout=ANSWER_SECONDS)
-            late = not reading.done()
-            if late:
-                worker.process.kill()
-            _, reply, error = await reading
-            how = f"failed with {error}"
-        except (EOFError, OSError):
-            reply, error = None, "it has died"
-            how = (
-                f"took more than {ANSWER_SECONDS:g} s and was stopped"
-                if late
-                else "ended unexpectedly"
-            )
+            found: Reply = await asyncio.to_thread(self.worker.compute, job, ANSWER_SECONDS)
+        except (WorkerLost, TimeoutError) as lost:
+            self.worker.open()
+            if self.killer is not None:  # a superseded job that had to be ended is just that
+                return SUPERSEDED
+            reason = f"the process that computes has failed ({lost}); another one is there now"
+            return "lost", json.dumps({"error": reason}).encode()
         finally:
             self.current, killer, self.killer = None, self.killer, None
             if killer is not None:
                 killer.cancel()
-        if not error:
-            found: Reply = reply
-            return found
-        self._end()
-        self._running()
-        if killer is not None:  # a superseded job that had to be ended is just that
-            return SUPERSEDED
-        reason = {"error": f"the process that computes {how}; another one is there now"}
-        return "lost", json.dumps(reason).encode()
-
-    def _cancel(self, number: int) -> None:
-        """Ask the process to leave its job, and end it if it does not."""
-        if self.worker is None or self.killer is not None:
-            return
-        self.worker.cancel(number)
-        loop = asyncio.get_running_loop()
-        self.killer = loop.call_later(CANCEL_SECONDS, self.worker.process.kill)
+        return found

@@ -14,7 +14,6 @@ from functools import partial
 from time import perf_counter
 from typing import Any
 
-from ptmcad.answer.counts import counted_by
 from ptmcad.answer.regionmap import RegionMap
 from ptmcad.answer.sweep import Bounds, CountedArea, State, Summary, Widest
 from ptmcad.answer.widths import overall
@@ -23,6 +22,7 @@ from ptmcad.errors import ConfigError, HypothesisError, LimitReached, PtmcadErro
 from ptmcad.options import Options
 from ptmcad.question.config.sweeps import Sweeping
 from ptmcad.question.slice import Slice
+from ptmcad.show.table import areas_by_key
 from ptmcad.text.codec import listed, row_of
 from ptmcad.text.numerals import decimal, text_of
 from ptmcad.version import __version__
@@ -135,13 +135,9 @@ def summary_of(result: RegionMap, wanted: Wanted) -> Summary:
 
 def _areas(result: RegionMap, known: bool) -> Iterator[CountedArea]:
     """The regions by the count that distinguishes them, in increasing order."""
-    found: dict[tuple[int, ...], list[tuple[Fraction, Fraction]]] = {}
-    for region in result.regions:
-        found.setdefault(counted_by(region, result.slice.count), []).append(region.area)
-    for count, areas in sorted(found.items()):
-        low, high = (sum((area[side] for area in areas), Fraction(0)) for side in (0, 1))
+    for count, (number, area) in areas_by_key(result).items():
         text = "?" if count == (-1,) else "-".join(map(str, count))
-        yield CountedArea(text, len(areas), bounds(low, high) if known else ("", ""))
+        yield CountedArea(text, number, bounds(*area) if known else ("", ""))
 
 
 def bounds(low: Fraction, high: Fraction) -> Bounds:

@@ -19,10 +19,9 @@ need no file system in common with this process.
 from __future__ import annotations
 
 import logging
-import signal
 from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
 from contextlib import suppress
-from multiprocessing.connection import wait
 from queue import Empty, SimpleQueue
 from time import monotonic
 from typing import Any
@@ -30,16 +29,14 @@ from typing import Any
 from ptmcad.answer.sweep import State
 from ptmcad.errors import ConfigError, OutputError, shown
 from ptmcad.workbench.sweeps.member import Outcome, out_of_time
-from ptmcad.workbench.worker import Task, Worker
+from ptmcad.workbench.worker import Task, Worker, WorkerLost
 
 _OVERRUN = 1.0
 """Seconds by which a member may overrun its time limit before its process is killed; it looks at
 the clock itself.
 """
-_AHEAD = 1
-"""Members that a worker has besides the one that it computes, so that it need not wait for this
-process.
-"""
+_EACH = 2
+"""Members for each worker: one that is computed and one that waits, so that the worker does not."""
 
 
 Answer = tuple[int, Any]
@@ -47,7 +44,7 @@ Answer = tuple[int, Any]
 
 
 class Pool:
-    """Worker processes on this machine.
+    """Worker processes on this machine, each asked by a thread of its own.
 
     Parameters
     ----------
@@ -56,100 +53,46 @@ class Pool:
     """
 
     def __init__(self, task: Task, jobs: int, timeout: float | None = None) -> None:
-        self.task, self.jobs, self.timeout = task, jobs, timeout
-        self._workers: list[Worker] = []
-        self._done: list[Answer] = []
+        self.timeout, self._workers = timeout, [Worker(task) for _ in range(jobs)]
+        self._idle = [*self._workers]
+        self._threads = ThreadPoolExecutor(jobs)
+        self._under_way: dict[Future[Any], int] = {}
 
     @property
     def room(self) -> bool:
         """Whether one more member is wanted now."""
-        return len(self._workers) < self.jobs or any(
-            len(w.numbers) <= _AHEAD for w in self._workers
-        )
+        return len(self._under_way) < _EACH * len(self._workers)
 
     @property
     def busy(self) -> bool:
         """Whether there are members of which nothing has been returned yet."""
-        return bool(self._done) or any(worker.numbers for worker in self._workers)
+        return bool(self._under_way)
 
     def submit(self, number: int) -> None:
         """Have a member computed."""
-        least = min(self._workers, key=lambda worker: len(worker.numbers), default=None)
-        if least is None or (least.numbers and len(self._workers) < self.jobs):
-            least = Worker(self.task)
-            self._workers.append(least)
-        least.ask(number, number)
+        self._under_way[self._threads.submit(self._outcome, number)] = number
 
     def answers(self, seconds: float | None) -> Sequence[Answer]:
         """What has been answered; waits for an answer, for so many seconds at most."""
-        busy = {worker.connection: worker for worker in self._workers if worker.numbers}
-        if not self._done and busy:
-            for connection in wait(list(busy), self._patience(seconds)):
-                self._read(busy[connection])  # type: ignore[index]
-        self._kill_late()
-        answered, self._done = self._done, []
-        return answered
+        done = wait(self._under_way, seconds, FIRST_COMPLETED).done
+        return [(self._under_way.pop(each), each.result()) for each in done]
 
     def close(self) -> None:
         """End at once; what is not answered is lost."""
+        self._threads.shutdown(wait=False, cancel_futures=True)
         for worker in self._workers:
-            worker.process.kill()
-        for worker in self._workers:
-            worker.bury()
-        self._workers = []
+            worker.close()
 
-    def _read(self, worker: Worker) -> None:
-        """Take an answer, or note that the worker has died."""
+    def _outcome(self, number: int) -> Any:
+        worker = self._idle.pop()
         try:
-            number, outcome, error = worker.answer()
-        except (EOFError, OSError):
-            self._died(worker, None)
-            return
-        self._done.append((number, Outcome(State.FAILED, error) if error else outcome))
-        if error:
-            self._ended(worker)
-
-    def _died(self, worker: Worker, why: str | None) -> None:
-        """The first of a worker's members has failed; the others were not begun."""
-        first = worker.numbers.pop(0)
-        status = self._ended(worker)
-        self._done.append((first, Outcome(State.FAILED, why or _how_ended(status))))
-
-    def _ended(self, worker: Worker) -> int:
-        """Do without a worker; others get its members. Its exit status."""
-        self._workers.remove(worker)
-        status = worker.bury()
-        for number in worker.numbers:
-            self.submit(number)
-        return status
-
-    def _patience(self, seconds: float | None) -> float | None:
-        """How long to wait for an answer: until a member is late."""
-        if self.timeout is None:
-            return seconds
-        first = min(worker.since for worker in self._workers if worker.numbers)
-        late = max(0.0, first + self.timeout + _OVERRUN - monotonic())
-        return late if seconds is None else min(seconds, late)
-
-    def _kill_late(self) -> None:
-        """End workers whose member has overrun its limit in code that does not look at the clock."""
-        limit = self.timeout
-        if limit is None:
-            return
-        for worker in list(self._workers):
-            if worker.numbers and monotonic() > worker.since + limit + _OVERRUN:
-                worker.process.kill()
-                self._died(worker, out_of_time(limit))
-
-
-def _how_ended(status: int) -> str:
-    if status >= 0:
-        return f"its process ended by itself with status {status}"
-    try:
-        name = signal.Signals(-status).name
-    except ValueError:
-        name = f"signal {-status}"
-    return f"its process was ended by {name}"
+            return worker.compute(number, self.timeout and self.timeout + _OVERRUN)
+        except TimeoutError:
+            return Outcome(State.FAILED, out_of_time(self.timeout))
+        except WorkerLost as lost:
+            return Outcome(State.FAILED, str(lost))
+        finally:
+            self._idle.append(worker)
 
 
 def answers_of(
@@ -176,8 +119,6 @@ CONNECT_SECONDS = 15
 _LOOK_SECONDS = 2.0
 """Between two looks at the scheduler: whether it is there, and how many threads its workers have.
 """
-_TASKS_EACH = 2
-"""Members for each thread: one that is computed and one that waits at the worker."""
 
 
 class Cluster:
@@ -216,7 +157,7 @@ class Cluster:
                 self._threads = sum(self.client.nthreads().values())
             except (OSError, TimeoutError) as error:
                 raise self._gone() from error
-        return len(self._under_way) < _TASKS_EACH * max(self._threads, 1)
+        return len(self._under_way) < _EACH * max(self._threads, 1)
 
     @property
     def busy(self) -> bool:

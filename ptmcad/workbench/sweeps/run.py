@@ -315,9 +315,8 @@ def sketches(
         When one cannot be drawn.
     """
     pool = Pool(partial(_drawing, folder), min(jobs or processors(), max(1, len(numbers) // 4)))
-    left = iter(numbers)
     try:
-        found = answers_of(pool, lambda: next(left, None), lambda: None)
+        found = answers_of(pool, partial(next, iter(numbers), None), lambda: None)
         for done, (number, drawn) in enumerate(found, 1):
             if isinstance(drawn, Outcome):
                 raise OutputError(f"member {number} cannot be drawn: {drawn.error}")

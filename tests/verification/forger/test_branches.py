@@ -25,6 +25,7 @@ from ptmcad.answer.regionmap import (
     Kind,
     Merge,
     NonAdjacency,
+    PlanStep,
     Reason,
     Region,
     RegionMap,
@@ -162,6 +163,13 @@ def bare(r: RegionMap) -> RegionMap:
 def walled(r: RegionMap) -> int:
     """The number of the first stack that has walls."""
     return next(n for n, stack in enumerate(r.stacks) if stack.walls)
+
+
+def half_said(change: str) -> Change:
+    """That an involution made one half of the areas enough is added to the plan."""
+    what = "areas on one half of the window"
+    reason = f"its solutions are those of the other half, by {change}"
+    return lambda r: replace(r, plan=(*r.plan, PlanStep(what, False, reason)))
 
 
 NO_COUNTS: dict[str, None] = dict.fromkeys(("total", "stable", "index"))
@@ -319,6 +327,8 @@ OTHERS: list[tuple[Check, str, Change, str]] = [
     (check_left_out, "fig3", of("components", 0, left_out=NO_POINT), "is left out, but runs through the window"),
     (check_plan, "fig3", lambda r: replace(r, plan=r.plan[1:]), "the plan has 12 steps, not 13"),
     (check_plan, "fig3", of("plan", 0, reason="nobody asked"), "step 0 of the plan is not"),
+    (check_plan, "fig3", half_said("nosuch -> -nosuch"), "the plan has 14 steps, not 13"),
+    (check_plan, "fig3+no-areas", half_said("L1 -> -L1"), "the plan has 14 steps, not 13"),
     (check_plan, "fig3", of("plan", 0, what="nothing"), "step 0 of the plan is not"),
     (check_plan, "fig3", lambda r: with_plan(of("components", first(r, left_out=NO_POINT, kind=Kind.BOUNDARY),
                                                 left_out="")(r)), "is used, but it has no point in the window"),
