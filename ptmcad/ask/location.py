@@ -209,7 +209,7 @@ def component_cells(result: RegionMap) -> tuple[Components, dict[int, int]]:
     try:
         return complement, complement.numbered((cell.sample for cell in result.cells), (x, y))
     except ValueError as error:
-        raise contradiction(f"of the cells, {error}") from error
+        raise contradiction(str(error)) from error
 
 
 def _point(result: RegionMap, at: Mapping[str, Any]) -> tuple[Fraction, Fraction]:

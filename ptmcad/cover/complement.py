@@ -91,7 +91,7 @@ class Components:
             component = self.locate(u, v)
             if component is None or component in found:
                 raise ValueError(
-                    f"sample {number} is in a rectangle, or in the component of another one"
+                    f"the sample of cell {number} is in the cover or in the component of another cell"
                 )
             found[component] = number
         return found

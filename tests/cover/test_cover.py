@@ -166,7 +166,9 @@ def test_samples_are_numbered_and_lattice_points_are_looked_up_as_single_points_
     known = {number: len(own) - 1 - number for number in range(len(own))}
     assert found.numbered(own[::-1], WINDOW) == known
     for sample in own[:1]:
-        with pytest.raises(ValueError, match="sample 1 is in a rectangle, or in the component"):
+        with pytest.raises(
+            ValueError, match="sample of cell 1 is in the cover or in the component"
+        ):
             found.numbered([sample, sample], WINDOW)
     steps = np.arange(cover.steps)
     image = found.raster(steps[:2], steps).tolist()

@@ -83,7 +83,7 @@ def test_a_mechanism_is_drawn_with_its_own_parts() -> None:
         text.get_text() for text in figure.findobj(match=lambda artist: hasattr(artist, "get_text"))
     ]
     assert any(re.fullmatch(r"θ = .*°, s = .*", text) for text in texts)
-    assert "vertical slider, at A" in texts and "springs AP, BP, BO;" in texts
+    assert "vertical slider, at A" in texts and "springs AP, BP, BO; drawn aside" in texts
 
 
 def test_an_energy_over_one_unknown_is_a_curve() -> None:
